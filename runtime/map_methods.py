@@ -3,8 +3,6 @@
 Each is imported at first use, so that this module does not import modules that use the map.
 """
 
-from __future__ import annotations
-
 from .base.later import Later
 
 CURVES = "gaussmap.tools.gauss_map.image_curves"

@@ -1,7 +1,5 @@
 """`python -m gaussmap.symbolic`: write generated/, or with --check show what is stale."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

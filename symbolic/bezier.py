@@ -1,7 +1,5 @@
 """One quadratic Bézier triangle, given by numbers or symbols, and its support function."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from functools import cached_property
 from itertools import combinations_with_replacement

@@ -4,8 +4,6 @@ Over its tangent plane a surface is z = (κ₁ x² + κ₂ y²)/2, up to terms o
 normal turns by the gradient (κ₁ x, κ₂ y). All formulas are exact for that patch.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import sympy as sp

@@ -12,8 +12,6 @@ functional as the middle point of an edge on the boundary of a surface (`edge_po
 `edge_point_from_vertices`).
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import sympy as sp

@@ -1,7 +1,5 @@
 """Formulas in mathematical notation: plain text and LaTeX."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from typing import Any, cast

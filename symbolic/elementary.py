@@ -1,7 +1,5 @@
 """The elementary functions of tapes: Taylor coefficients, their extrema and rounding errors."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 

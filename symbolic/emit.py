@@ -1,7 +1,5 @@
 """Formulas as Python source for Numba: functions of vectors, and filled templates."""
 
-from __future__ import annotations
-
 import re
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence

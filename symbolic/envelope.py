@@ -5,8 +5,6 @@ envelope of |n| h(n/|n|), which is homogeneous of degree 1. The gradient of this
 (5) with eq. (6), and its Hessian is derived here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import cast
 

@@ -1,7 +1,5 @@
 """A user's support function h(n): from a SymPy expression to the source of a function of arrays."""
 
-from __future__ import annotations
-
 import math
 import textwrap
 from collections.abc import Sequence

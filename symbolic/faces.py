@@ -3,8 +3,6 @@
 Faces of other kinds are rational surfaces, or surfaces of the catalogue moved in space.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import cast
 

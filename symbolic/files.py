@@ -1,7 +1,5 @@
 """The files of generated/: the formulas of each file, and the values for its template."""
 
-from __future__ import annotations
-
 import difflib
 import subprocess
 import sys

@@ -15,8 +15,6 @@ at infinity, with the normal n0, and the other two are lines in fixed directions
 multiples of one vector (a graph), the binary cubic vanishes and D(N) is a constant.
 """
 
-from __future__ import annotations
-
 from itertools import product
 
 import sympy as sp

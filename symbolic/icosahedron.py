@@ -1,7 +1,5 @@
 """The regular icosahedron, exactly: its corners, edges and faces, and a frame for each face."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from itertools import combinations

@@ -8,8 +8,6 @@ so that the formulas of a patch hold for it: Newton's step to the point with the
 preimage of n on that patch.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import sympy as sp

@@ -1,7 +1,5 @@
 """All formulas and surfaces as a Markdown page for code hosts and as a LaTeX document."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

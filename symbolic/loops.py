@@ -4,8 +4,6 @@ The loops are plain Python, which `runtime` compiles. A loop is self-contained: 
 reused alone.
 """
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from typing import cast

@@ -1,7 +1,5 @@
 """Triangles through points of a surface: deviation, angles, spacing, and curved edges."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from .formula import Formula, Parts, formula

@@ -1,7 +1,5 @@
 """The notation of vectors in formulas: symbols, their products, and their components."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any, Literal, cast
 

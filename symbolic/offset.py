@@ -5,8 +5,6 @@ normals gives a parametrization x(s,t) = ∇h(n(s,t)) of a patch: a linear field
 and a polynomial field of polynomial length gives a rational offset, without square roots.
 """
 
-from __future__ import annotations
-
 import sympy as sp
 
 from .formula import Formula, Parts, compose, formula

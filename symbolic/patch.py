@@ -6,8 +6,6 @@ All formulas are derived once, in the five linear forms A = n·a, B = n·b, C = 
 of the normal n; the vectors are reintroduced by the chain rule, since ∂A/∂n = a and so on.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import combinations, product
 

@@ -1,7 +1,5 @@
 """The positions of parametric surfaces, and their derivatives, as formulas."""
 
-from __future__ import annotations
-
 from .formula import BEYOND_THE_PAPER, Content, Formula
 from .notation import vectors
 from .surfaces import ParametricSurface

@@ -4,8 +4,6 @@ Powers other than short products and square roots are calls of `math.pow`; they 
 expressions.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterable
 from typing import Any, cast

@@ -10,8 +10,6 @@ T0 = n·x_sss, T1 = n·x_sst, T2 = n·x_stt, T3 = n·x_ttt at points between the
 points with the normals n and −n are the common zeros of both.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import product
 

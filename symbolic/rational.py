@@ -1,7 +1,5 @@
 """Rational surfaces, such as NURBS: the derivatives of a quotient."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from .formula import Parts, formula

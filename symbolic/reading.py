@@ -6,8 +6,6 @@ each function declares which of the two it takes. The work of SymPy is bounded i
 constants become floating-point numbers, and operations and queries of signs are counted.
 """
 
-from __future__ import annotations
-
 import ast
 import warnings
 from collections import Counter

@@ -1,7 +1,5 @@
 """Straight-line code of a formula, made by a short list of passes."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass

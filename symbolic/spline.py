@@ -8,8 +8,6 @@ and the extrapolation of the ring of coefficients outside the domain. Cells have
 is centred at the origin.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction

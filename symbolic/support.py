@@ -1,7 +1,5 @@
 """Support functions, eqs. (4)-(7), of patches, spheres and offsets; and curvature."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from .envelope import (

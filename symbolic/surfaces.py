@@ -1,7 +1,5 @@
 """The catalogue of parametric surfaces: exact positions, domains, boundary conditions."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, get_args

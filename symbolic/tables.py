@@ -1,7 +1,5 @@
 """Tables of constants, as source for Numba: the grid and the icosahedron."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Sequence
 from fractions import Fraction

@@ -4,8 +4,6 @@ Evaluated with numbers, a tape gives points; with Taylor polynomials, derivative
 bounds. The interpreters are in `runtime/tape/kernels/`, such as `points.py`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, cast
 

@@ -11,8 +11,6 @@ Z have errors up to D_x, D_y, D_z, then their product x y z changes by at most
     D_x Y Z + (X + D_x) D_y Z + (X + D_x) (Y + D_y) D_z.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

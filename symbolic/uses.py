@@ -1,7 +1,5 @@
 """The generated functions of a formula, and the formulas that contain it."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterable, Mapping
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Advice for input that is not a surface: meshes, point clouds, file names."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Types of arrays that most modules use: of real numbers, of integers, of booleans."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

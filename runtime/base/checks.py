@@ -1,7 +1,5 @@
 """Checks of arguments: whole numbers, real numbers, arrays, and names ("did you mean")."""
 
-from __future__ import annotations
-
 import difflib
 import math
 from collections.abc import Sequence

@@ -3,8 +3,6 @@
 Importing this module installs it; each module with kernels that users call imports it.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from contextlib import suppress

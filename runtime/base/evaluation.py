@@ -1,7 +1,5 @@
 """Calls of users' callables, and checks of the values that they return."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Optional libraries: imported on demand, with an error that names the extra if one is missing."""
 
-from __future__ import annotations
-
 import importlib
 import importlib.util
 from typing import Any

@@ -1,7 +1,5 @@
 """Calling formulas on NumPy arrays, exact numbers or single floats, without compilation."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

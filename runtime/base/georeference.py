@@ -1,7 +1,5 @@
 """Georeferences: the reference system of coordinates, and the origin subtracted from them."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Sequence

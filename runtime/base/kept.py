@@ -1,7 +1,5 @@
 """Values that are computed once for an object and cached as long as it lives."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Hashable
 from dataclasses import fields
 from typing import Any, TypeVar

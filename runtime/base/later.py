@@ -1,7 +1,5 @@
 """Methods that are defined in modules which import their class; loaded at first use."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any

@@ -4,8 +4,6 @@ A system that overcommits memory kills the process when the memory is used, with
 that could be caught. `COSTS` lists the memory of each kind of request.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """A line on terminals for work with an unknown number of steps: its current step, and a clock."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar

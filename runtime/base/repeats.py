@@ -1,7 +1,5 @@
 """Indices that are repeated, each as often as its count says."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .aliases import Indices

@@ -1,7 +1,5 @@
 """Scales of coordinates: powers of two that bring them to about 1, and limits of coordinates."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

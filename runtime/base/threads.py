@@ -1,7 +1,5 @@
 """Compiled loops over ranges on several threads: kernels release the global lock."""
 
-from __future__ import annotations
-
 import os
 import sys
 import threading

@@ -1,7 +1,5 @@
 """Numbers with their nouns, for summaries."""
 
-from __future__ import annotations
-
 
 def plural(count: int, what: str) -> str:
     """Return a number with its noun, such as "1 part" and "2,000 parts"."""

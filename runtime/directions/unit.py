@@ -1,7 +1,5 @@
 """Directions as unit vectors: checks of users' directions, and frames perpendicular to them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import reduce
 from typing import Any

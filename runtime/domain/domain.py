@@ -1,7 +1,5 @@
 """The domain of a surface, a rectangle, and the boundary conditions on its four sides."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, Literal, cast
 

@@ -1,7 +1,5 @@
 """Loops: closed polygons in the parameter plane, with tests of whether points are inside."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

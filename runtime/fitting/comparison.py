@@ -3,8 +3,6 @@
 A surface is compared at test points that are distinct from those of the fit, data at all points.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cache

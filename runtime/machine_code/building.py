@@ -9,8 +9,6 @@ was built from the same sources and versions. With GAUSSMAP_KERNELS=0 nothing is
 file is used.
 """
 
-from __future__ import annotations
-
 import gc
 import os
 import sys

@@ -1,7 +1,5 @@
 """Numba's cache of kernels: machine code of the package, and machine code compiled here."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from contextlib import suppress

@@ -7,8 +7,6 @@ has names and types. An entry is loaded without Numba's compiler. Files of entri
 atomically.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

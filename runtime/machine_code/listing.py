@@ -8,8 +8,6 @@ the list lacks. They are printed, and the exit code is 1 if there are any. With 
 in FOLDER become the list; with --usual, they become the list of kernels that usual calls need.
 """
 
-from __future__ import annotations
-
 import sys
 from collections import defaultdict
 from collections.abc import Sequence

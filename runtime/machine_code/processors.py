@@ -1,7 +1,5 @@
 """Versions, platform and processor: what machine code depends on besides its sources."""
 
-from __future__ import annotations
-
 import os
 import sys
 import sysconfig

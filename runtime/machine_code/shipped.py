@@ -9,8 +9,6 @@ it lists. It is read from the folder of the package only, and only if everybody 
 also write the sources: machine code could do anything.
 """
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Mapping

@@ -7,8 +7,6 @@ A type is a text, as "float64", "int64 2 C" (an array: item, dimensions, layout)
 readonly", a list of types (a tuple), {"module.Class": a list of types} (a named tuple), or "none".
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module

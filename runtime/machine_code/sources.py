@@ -1,7 +1,5 @@
 """The sources that kernels are made of, and their digest."""
 
-from __future__ import annotations
-
 import hashlib
 from functools import cache
 from pathlib import Path

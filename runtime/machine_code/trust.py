@@ -1,7 +1,5 @@
 """Write access to files and folders of machine code: code that others can write is not run."""
 
-from __future__ import annotations
-
 import os
 import stat
 from pathlib import Path

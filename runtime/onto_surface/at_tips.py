@@ -1,7 +1,5 @@
 """Samples at prescribed normals, including tips and points of creases that have these normals."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any

@@ -5,8 +5,6 @@ grid on its box to points with the normal. Each piece consists of points with th
 trim that are linked by chains of neighbours.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

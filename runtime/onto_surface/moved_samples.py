@@ -1,7 +1,5 @@
 """Samples at given normals: found on a spline, then moved to its surface."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

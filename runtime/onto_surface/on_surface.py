@@ -1,7 +1,5 @@
 """Sampling of surfaces without a proof: points are found on a spline, and moved to the surface."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar

@@ -4,8 +4,6 @@ At a pole the parameters are polar coordinates, an angle φ and a distance r. Th
 in s = r cos φ, t = r sin φ.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

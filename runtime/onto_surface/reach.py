@@ -1,7 +1,5 @@
 """A reach as a trim: the part of a surface whose normals and points satisfy given conditions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

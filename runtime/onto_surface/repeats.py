@@ -8,8 +8,6 @@ they were moved, at least one of them has left its patch. Only normals with such
 examined.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..base.aliases import Flags, Indices

@@ -1,7 +1,5 @@
 """Surfaces of several smooth pieces: their samples at normals, and their common report."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -7,8 +7,6 @@ exclude one of these zeros, or show that all normals are more than 90° from n, 
 with this normal.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

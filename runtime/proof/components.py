@@ -6,8 +6,6 @@ path around the box, minus the indices of the regular points inside the path. Bo
 are marked by the search itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

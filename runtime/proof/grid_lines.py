@@ -1,7 +1,5 @@
 """Parameter lines of a grid, and lines where derivatives of a spline jump: joints and creases."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

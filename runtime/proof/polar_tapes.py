@@ -5,8 +5,6 @@ distance of the other parameter from its value at the pole. The line r = 0 is co
 p.
 """
 
-from __future__ import annotations
-
 import inspect
 import math
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ around it vanishes, so that each coordinate of x_u (u, r) is r x_ur (u, ρ) with
 r. Therefore the normals in the strip lie in a cone that contains all vectors x_ur × x_r.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ term; divided by r, they are polynomials as well. All operations of a tape after
 linear in its coordinates: division by the weight, rotation, and translation.
 """
 
-from __future__ import annotations
-
 from math import comb
 
 import numpy as np

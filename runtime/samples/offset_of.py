@@ -1,7 +1,5 @@
 """The origin of the samples of an offset."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from ..spline.nets import AnySpline

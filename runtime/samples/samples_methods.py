@@ -4,8 +4,6 @@ Each is imported at first use, as are the names of the package (see `__init__.py
 module does not import modules that use samples.
 """
 
-from __future__ import annotations
-
 from ..base.later import Later
 
 DENSITY, TOOLS = "gaussmap.tools.density.methods", "gaussmap.tools.derived"

@@ -13,8 +13,6 @@ tolerance is at the open boundary of the domain: a normal whose point lies outsi
 most the error of the data is a hit.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -9,8 +9,6 @@ patches have neither gaps nor overlaps. At a pole the images are wedges. The ima
 collapsed edge is a curve, and no normal is decided to be in it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

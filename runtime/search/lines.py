@@ -5,8 +5,6 @@ its own normal. So the search displaces the normal by more than rounding, and th
 moved back to the line.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...generated import patch as formulas

@@ -5,8 +5,6 @@ Coefficients and normals are binary fractions, and the formulas need only +, −
 sign of every form is exact.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """The index of a spline: for each bin of the sphere, the patches that may have normals in it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

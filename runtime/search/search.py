@@ -5,8 +5,6 @@ has a normal follows from the signs of its quadratic forms U, V, W and D at this
 Sect. 3.2). Exact arithmetic decides the pairs for which rounding leaves a sign open.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Generator, Iterator
 from contextlib import closing
 

@@ -1,7 +1,5 @@
 """Joints of quadratic patches: edges that two patches share, and the angles between normals."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property

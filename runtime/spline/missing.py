@@ -1,7 +1,5 @@
 """Grids with missing points: the patches of their spline that do not depend on these points."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Callable

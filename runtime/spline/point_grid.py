@@ -1,7 +1,5 @@
 """Points on a grid as a surface: scans, elevation models, images."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

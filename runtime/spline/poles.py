@@ -10,8 +10,6 @@ in the size of a cell. They must be exactly zero: therefore each d is rounded to
 integers x, y and two vectors a, b of integers, all in units of the rounding of the coordinates.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

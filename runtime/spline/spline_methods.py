@@ -1,7 +1,5 @@
 """Methods of splines that later modules define; `spline_methods.pyi` has their signatures."""
 
-from __future__ import annotations
-
 from ..base.later import Later
 
 

@@ -5,8 +5,6 @@ distance from the tip. Such a patch has no samples: its normals form a curve, an
 its Gaussian image are rounding errors. Smooth poles, which have one normal, are no tips.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

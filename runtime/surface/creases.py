@@ -6,8 +6,6 @@ jumps there by at most CREASE_ANGLE, and the length of the tangent across the li
 factor of LARGEST_JUMP: larger jumps would let a spline fold.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..base.aliases import Array

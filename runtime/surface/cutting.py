@@ -1,7 +1,5 @@
 """The smooth pieces of a surface between its creases."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from typing import TypeVar

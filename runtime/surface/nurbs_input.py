@@ -1,7 +1,5 @@
 """Reads and checks a user's NURBS surface, given by arrays or as an object of geomdl or Splipy."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

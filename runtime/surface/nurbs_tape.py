@@ -5,8 +5,6 @@ from the knots and then rounded. Sums of their products with control points are 
 with bounds of the rounding errors.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Tapes of surfaces: the operations that compute x(u,v), for bounds of its derivatives."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any

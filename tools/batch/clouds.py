@@ -1,7 +1,5 @@
 """`Clouds`: the same number of points of each part of a data set, in NumPy arrays, for training."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path

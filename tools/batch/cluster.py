@@ -5,8 +5,6 @@ which all machines see by the same path, and answers with a few numbers. If a wo
 gives its task to another one, which samples the missing parts.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 import threading
 from collections.abc import Generator, Iterable, Iterator, Sequence

@@ -1,7 +1,5 @@
 """The parts of a data set: surfaces, and files that a worker reads."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

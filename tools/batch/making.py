@@ -1,7 +1,5 @@
 """Making a data set on this machine or on a cluster, with its progress."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sized
 from contextlib import closing, contextmanager

@@ -1,7 +1,5 @@
 """The plan of a run: the requested samples of each part, their storage, and limits."""
 
-from __future__ import annotations
-
 import hashlib
 import secrets
 from collections.abc import Sequence

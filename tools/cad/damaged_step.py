@@ -4,8 +4,6 @@ A face that refers to a missing entity, or to numbers that are not finite, would
 plane, or make Open CASCADE hang. The other faces can be read.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The dimensions of planes, cylinders, cones, spheres and tori: axes, centres, radii."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Samples on the sharp edges of a part, spaced like its other samples nearby."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Parts that need no CAD file, for examples and tests."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 

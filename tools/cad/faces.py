@@ -6,8 +6,6 @@ frame of their own, and then placed. Extrusions are NURBS. Second derivatives of
 numerical (see `offset_surface`).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """A part made of surfaces: faces, shared edges, and one orientation."""
 
-from __future__ import annotations
-
 import itertools
 import warnings
 from collections import defaultdict

@@ -4,8 +4,6 @@ Files are inspected before Open CASCADE reads them: it reads the beginning of a 
 without complaint, and hangs on coordinates that are not finite.
 """
 
-from __future__ import annotations
-
 import re
 import zipfile
 from pathlib import Path

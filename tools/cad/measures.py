@@ -1,7 +1,5 @@
 """The boundaries of a part, the volume of its solids, and the gaps between its faces."""
 
-from __future__ import annotations
-
 import itertools
 import warnings
 

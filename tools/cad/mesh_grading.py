@@ -4,8 +4,6 @@ An edge is as fine as the finest adjacent face requires. So, without grading, a 
 fillet would have badly shaped, long triangles at their common edge.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...runtime.base.trees import tree_of

@@ -1,7 +1,5 @@
 """Moving vertices of thin triangles inside their faces, to increase the smallest angles."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """NURBS of faces over the domain of the face: cut, or continued periodically."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The mesh of a part as an obstacle: rays are tested for intersections with it."""
 
-from __future__ import annotations
-
 from ...runtime.base.kept import kept
 from .mesh_edges import MeshEdges
 from .mesh_spacing import Spacing

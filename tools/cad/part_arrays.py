@@ -4,8 +4,6 @@ The numbers of all faces are concatenated in one array, with an array of start i
 part of 100,000 faces has some 20 arrays. `saving` describes them.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any

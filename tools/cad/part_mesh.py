@@ -1,7 +1,5 @@
 """A mesh of a part: adjacent faces share its vertices, and normals belong to corners."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property

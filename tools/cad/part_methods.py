@@ -4,8 +4,6 @@ Each method is loaded on first access, so that this module imports no other modu
 `part_methods.pyi` declares the methods.
 """
 
-from __future__ import annotations
-
 from ...runtime.base.later import Later
 
 MEASURES, PLOT = "gaussmap.tools.cad.measures", "gaussmap.tools.pictures.plot"

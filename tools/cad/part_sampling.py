@@ -1,7 +1,5 @@
 """Samples of a CAD part: one target density, one greedy cover and one count for all faces."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The space of those points of a part that a probe can reach, and the weights of samples."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator

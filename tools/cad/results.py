@@ -1,7 +1,5 @@
 """The faces of a part as one space in which samples are placed."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 

@@ -56,8 +56,6 @@ c = cos u X + sin u Y the surfaces are, as in Open CASCADE and STEP,
 Faces of the kind "surface" are functions in memory, and in no file.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping

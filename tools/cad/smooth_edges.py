@@ -6,8 +6,6 @@ points with one normal, that extends over several faces; points of other faces a
 component are left out.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from operator import attrgetter
 

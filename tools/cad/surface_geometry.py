@@ -4,8 +4,6 @@ The surfaces are those of the catalogue and of faces, possibly moved and flipped
 those of CAD files, described in `saving`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

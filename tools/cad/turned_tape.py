@@ -1,7 +1,5 @@
 """The tape of a surface of revolution: the polynomials of a NURBS curve, then the rotation."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

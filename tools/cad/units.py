@@ -1,7 +1,5 @@
 """Converting records of faces to another unit of length."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

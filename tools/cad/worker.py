@@ -5,8 +5,6 @@ print to it; the results are files in the given folder: `part.npz`, or `error.tx
 that continues "'path' …".
 """
 
-from __future__ import annotations
-
 import json
 import os
 import sys

@@ -1,7 +1,5 @@
 """The command `gaussmap batch`."""
 
-from __future__ import annotations
-
 import json
 import time
 from dataclasses import asdict, replace

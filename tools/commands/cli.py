@@ -4,8 +4,6 @@ Results go to standard output; progress, warnings and errors go to standard erro
 one line, with exit code 2; Ctrl-C exits with 130, and a closed pipe on the output with 141.
 """
 
-from __future__ import annotations
-
 import sys
 import warnings
 from collections.abc import Callable, Sequence

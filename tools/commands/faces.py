@@ -1,7 +1,5 @@
 """The command `gaussmap faces`."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

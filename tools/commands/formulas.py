@@ -1,7 +1,5 @@
 """The command `gaussmap formulas`."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 from .console import say, table

@@ -1,7 +1,5 @@
 """The command `gaussmap mesh`."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 from ..files.formats import check_mesh_target

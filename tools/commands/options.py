@@ -1,7 +1,5 @@
 """Building blocks of commands: modules imported late, options in groups, types of values."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 from types import SimpleNamespace

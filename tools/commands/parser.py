@@ -4,8 +4,6 @@ Nothing here needs NumPy or Numba, so that help and completion are quick. Each c
 function `run` of the module that has the command's name, see `options.Command`.
 """
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

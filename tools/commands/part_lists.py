@@ -1,7 +1,5 @@
 """The parts that a command names: surfaces, files, folders, patterns, and lists of these."""
 
-from __future__ import annotations
-
 import glob
 import sys
 from collections.abc import Iterable, Iterator

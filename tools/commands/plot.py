@@ -1,7 +1,5 @@
 """The command `gaussmap plot`."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 from ...runtime.base.progress import busy

@@ -1,7 +1,5 @@
 """The command `gaussmap sample`."""
 
-from __future__ import annotations
-
 import tempfile
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Inputs of the commands that sample: surfaces and normals, by name or from files."""
 
-from __future__ import annotations
-
 import os
 from contextlib import suppress
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """The command `gaussmap support`."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

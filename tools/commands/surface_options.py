@@ -1,7 +1,5 @@
 """The options that select a surface, and how it is read and approximated."""
 
-from __future__ import annotations
-
 import click
 
 from ...runtime.base.limits import MOST

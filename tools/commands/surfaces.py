@@ -1,7 +1,5 @@
 """The command `gaussmap surfaces`."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 from ...runtime.base.checks import known_name

@@ -1,7 +1,5 @@
 """The command `gaussmap view`."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 from ..viewer.view import COUNT, check_count, check_target, view

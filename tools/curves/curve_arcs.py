@@ -7,8 +7,6 @@ halved until the normal turns by less than `SMALLEST_TURN` there: around inflect
 curve is straight. Intervals where x′ may vanish are cusps or singular.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

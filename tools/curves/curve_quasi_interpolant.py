@@ -1,7 +1,5 @@
 """The coefficients of a planar spline from values or points: local averages (Sect. 4.1)."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Candidates for samples along the boundaries of pieces."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Samples at prescribed normals, before the gaps between them are filled."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Callable, Iterable

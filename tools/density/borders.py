@@ -1,7 +1,5 @@
 """The boundary of a trim on a raster of the parameters, to find the boxes that it may intersect."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -4,8 +4,6 @@ Examples are joints of a plane and a fillet, knots, and parabolic curves that ar
 The lines of a grid stay half a step away from them.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...runtime.base.aliases import Array

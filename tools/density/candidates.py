@@ -1,7 +1,5 @@
 """Choosing samples among candidates: a candidate far from all samples becomes a sample."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import TypeVar
 

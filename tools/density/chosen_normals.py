@@ -1,7 +1,5 @@
 """The normals to search for: given normals, or a lattice that yields a number of samples."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The coverage: the largest distance of a point of the surface from the nearest sample."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Normal deviation: angles between the normals of a surface and those of its samples."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

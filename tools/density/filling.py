@@ -1,7 +1,5 @@
 """Samples of pieces: at prescribed normals, and in the gaps between these."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Covers that begin with graded grids; the remaining gaps are filled by added samples."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import reduce

@@ -1,7 +1,5 @@
 """A short path through samples: the shortest links are joined first, until there is one path."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...runtime.base.aliases import Array, Indices

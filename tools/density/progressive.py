@@ -1,7 +1,5 @@
 """A progressive order of samples: every prefix is well distributed."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The checked arguments of a sampling: normals, count, angle, coverage and density."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Apportionment: division of a count in proportion to weights."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Selection of the cells inside the trims of their pieces, and choice of their places."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

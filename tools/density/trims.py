@@ -1,7 +1,5 @@
 """The trims of all pieces, evaluated at points of many pieces in one call."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 

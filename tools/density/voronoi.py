@@ -1,7 +1,5 @@
 """Discrete Voronoi cells of samples, on points finer than the candidates."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...runtime.base.aliases import Array, Indices

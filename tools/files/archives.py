@@ -3,8 +3,6 @@
 An archive may unpack to a thousand times its size, and headers of its arrays may be false.
 """
 
-from __future__ import annotations
-
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager

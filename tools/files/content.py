@@ -1,7 +1,5 @@
 """The metadata of samples in files: the report, and the names of the fields."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict

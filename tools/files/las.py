@@ -1,7 +1,5 @@
 """Point clouds for surveying: .las files and compressed .laz files, by laspy."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Units of length, and their names in files."""
 
-from __future__ import annotations
-
 from ...runtime.base.errors import InputError, shown
 from ...runtime.samples.fields import COLUMNS, UNITS
 from ...runtime.samples.samples import Samples

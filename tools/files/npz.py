@@ -1,7 +1,5 @@
 """NumPy archives of samples: all fields and the report, restored bit for bit."""
 
-from __future__ import annotations
-
 from io import BufferedReader
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Arrays in files, named FILE.npy, FILE.npz or FILE.npz:NAME. Nothing is unpickled."""
 
-from __future__ import annotations
-
 import re
 from io import BufferedReader
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Columns of tables that describe the face of a part on which a sample lies."""
 
-from __future__ import annotations
-
 import csv
 import io
 from typing import Any

@@ -1,7 +1,5 @@
 """Samples of terrain: columns of slope and aspect, and files for geographic information systems."""
 
-from __future__ import annotations
-
 import warnings
 from io import BytesIO
 from pathlib import Path

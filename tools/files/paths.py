@@ -4,8 +4,6 @@ Everything is written to a temporary file in the same folder, which then replace
 step.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import secrets

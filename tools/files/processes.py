@@ -1,7 +1,5 @@
 """Processes whose work may hang or crash: they get limits, and end when their parent ends."""
 
-from __future__ import annotations
-
 import os
 import signal
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """Opening files for reading, with one sentence for each kind of error."""
 
-from __future__ import annotations
-
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Coordinate reference systems: identification and projection, by rasterio."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

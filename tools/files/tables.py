@@ -1,7 +1,5 @@
 """Text with a line for each sample: .csv and .xyz."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from itertools import chain

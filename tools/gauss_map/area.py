@@ -1,7 +1,5 @@
 """Solid angles and areas of the Gaussian images of patches, cut at singular points."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Joining pieces of curves in the parameter plane into polylines."""
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Sequence
 
 import numpy as np

@@ -7,8 +7,6 @@ are sorted along these curves by their feet, the nearest points of the curves in
 plane. A curve is cut where it leaves the trim of the spline.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Critical points of K at which K is zero: curves K = 0 cross there, or K touches zero."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

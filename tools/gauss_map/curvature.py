@@ -1,7 +1,5 @@
 """The Gaussian curvature of a smooth surface at its parameters: values, errors and derivatives."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple

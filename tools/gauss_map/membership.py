@@ -1,7 +1,5 @@
 """Membership in the Gaussian image of one patch: in floating point, and exactly where undecided."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property

@@ -1,7 +1,5 @@
 """The parabolic curves of a spline: lines inside patches, and edges where K changes sign."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Hashable
 from itertools import pairwise, product

@@ -1,7 +1,5 @@
 """The parabolic curves and points of a smooth surface, located by the signs of K on a grid."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

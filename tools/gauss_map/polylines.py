@@ -1,7 +1,5 @@
 """Polylines of the parameter plane, refined until they follow a curve in space."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 
 import numpy as np

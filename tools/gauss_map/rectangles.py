@@ -1,7 +1,5 @@
 """Rectangles (k, 2, 2) of the parameter plane: the lower and the upper corner of each."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

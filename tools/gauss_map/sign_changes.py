@@ -1,7 +1,5 @@
 """Lines between the nodes of a grid that separate values ≥ 0 from negative values."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Hashable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The signs of K at the nodes of a grid of the parameters."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Solid angles of Gaussian images: line integrals along the arcs of their boundaries."""
 
-from __future__ import annotations
-
 import math
 from itertools import product
 

@@ -5,8 +5,6 @@ a saddle of K. A block of cells around each saddle is left out, and the curves t
 are continued straight to the saddle.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...runtime.base.aliases import Array, Indices

@@ -1,7 +1,5 @@
 """The boundary of a trimmed surface: polylines in the domain, scaled to the unit square."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

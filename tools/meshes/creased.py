@@ -1,7 +1,5 @@
 """A mesh whose normals may jump: vertices are shared, and normals belong to corners."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any

@@ -1,7 +1,5 @@
 """The triangles of a mesh that share an edge."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

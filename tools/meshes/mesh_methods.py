@@ -1,7 +1,5 @@
 """The methods of `Mesh` defined in other modules; `mesh_methods.pyi` declares them."""
 
-from __future__ import annotations
-
 from ...runtime.base.later import Later
 
 FILES = "gaussmap.tools.files.of_meshes"

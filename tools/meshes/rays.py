@@ -1,7 +1,5 @@
 """Unobstructed and visible samples: rays tested against a mesh."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Texture coordinates of a mesh: its parameters, without jumps inside triangles."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

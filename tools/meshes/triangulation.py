@@ -8,8 +8,6 @@ parameters is continued periodically in the plane, and one copy of each triangle
 domain is a rectangle.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from contextlib import suppress

@@ -4,8 +4,6 @@ The whole domain is triangulated, with additional points that fill it outside of
 the triangles outside are left out. Points are added to the boundary until it consists of edges.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """`Picture`: a Matplotlib figure that notebooks show."""
 
-from __future__ import annotations
-
 from io import BytesIO
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg

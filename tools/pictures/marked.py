@@ -1,7 +1,5 @@
 """The normal that a picture marks in all its panels, with its samples."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

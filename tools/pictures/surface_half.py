@@ -1,7 +1,5 @@
 """The right of a picture: the surface with its visible samples."""
 
-from __future__ import annotations
-
 import math
 from itertools import product
 from typing import Any

@@ -1,7 +1,5 @@
 """Elevations in world coordinates: GeoTIFF files, and arrays of .npz files with coordinates."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """`Named`: the name or formula of a surface or part, and the options with which it is made."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from types import SimpleNamespace

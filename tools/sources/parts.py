@@ -1,7 +1,5 @@
 """CAD parts in files: STEP, IGES and BREP files, and .npz files that gaussmap saved."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from ...runtime.base.advice import CAD_SUFFIXES

@@ -1,7 +1,5 @@
 """`surface_of`: the surface or the CAD part that a text names."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from ...runtime.base.advice import NO_CLOUDS, NO_MESHES, is_mesh_file

@@ -1,7 +1,5 @@
 """Offsets of samples: x + d n, with the same normals, and their curvatures."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from dataclasses import replace

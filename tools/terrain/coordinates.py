@@ -1,7 +1,5 @@
 """The coordinates of heights: from the transform of a raster, a spacing, or arrays x and y."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

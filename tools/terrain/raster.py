@@ -1,7 +1,5 @@
 """Elevations in GeoTIFF files and ASCII grids, read by rasterio."""
 
-from __future__ import annotations
-
 import warnings
 from pathlib import Path
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Curves in the parameter plane as polylines that deviate to one side only."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -5,8 +5,6 @@ The code uses only names that versions 7.9 and 8.0 share.
 
 # pyright: reportMissingImports=false
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from importlib import import_module
 from typing import Any

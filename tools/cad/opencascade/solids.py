@@ -2,8 +2,6 @@
 
 # pyright: reportMissingImports=false
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -2,8 +2,6 @@
 
 # pyright: reportMissingImports=false
 
-from __future__ import annotations
-
 import io
 from collections.abc import Sequence
 from typing import Any
