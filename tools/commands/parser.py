@@ -413,49 +413,36 @@ def _normals(group: str, what: str) -> list[Option]:
 
 
 def _distribution() -> list[Option]:
+    group = "how dense"
+    how = (
+        "balanced (default): higher where a principal curvature is larger, by prescribed normals "
+        "and samples that fill the gaps. gauss (default where normals alone are given): "
+        "proportional to |K|, prescribed normals only. aligned: on a grid of lines u = const and v "
+        "= const, spaced by how fast the normal turns. uniform: the same everywhere. A number A: "
+        "proportional to |K|^A."
+    )
+    reach = (
+        "Only where the normal is within ANGLE degrees of the direction X Y Z, from which a probe, "
+        "a camera or a printer comes."
+    )
+    away = "Only points at least LENGTH away from edges and boundaries of faces."
+    first = (
+        "Only points of a CAD part or a closed surface that a ray against the direction of --reach "
+        "(default: +z) meets first."
+    )
+    slope = "Only where the normal is between LEAST and MOST degrees from +z."
+    aspect = (
+        "Only slopes that face within ANGLE degrees (90 at most) of a DIRECTION, in degrees "
+        "clockwise from north."
+    )
+    density_ = Option(
+        "--density HOW", how, density, group=group, main=True, shell_complete=densities
+    )
     return [
-        Option(
-            "--density HOW",
-            "balanced (default): higher where a principal curvature is larger, by prescribed "
-            "normals and samples that fill the gaps. gauss (default where normals alone are "
-            "given): proportional to |K|, prescribed normals only. aligned: on a grid of lines u = "
-            "const and v = const, spaced by how fast the normal turns. uniform: the same "
-            "everywhere. A number A: proportional to |K|^A.",
-            density,
-            group="how dense",
-            main=True,
-            shell_complete=densities,
-        ),
-        Option(
-            "--reach X Y Z ANGLE",
-            "Only where the normal is within ANGLE degrees of the direction X Y Z, from which a "
-            "probe, a camera or a printer comes.",
-            number,
-            group="how dense",
-        ),
-        Option(
-            "--from-edges LENGTH",
-            "Only points at least LENGTH away from edges and boundaries of faces.",
-            number,
-            group="how dense",
-        ),
-        Option(
-            "--unobstructed",
-            "Only points of a CAD part or a closed surface that a ray against the direction of "
-            "--reach (default: +z) meets first.",
-            group="how dense",
-        ),
-        Option(
-            "--slope LEAST MOST",
-            "Only where the normal is between LEAST and MOST degrees from +z.",
-            number,
-            group="how dense",
-        ),
-        Option(
-            "--aspect DIRECTION ANGLE",
-            "Only slopes that face within ANGLE degrees (90 at most) of a DIRECTION, in degrees "
-            "clockwise from north.",
-            number,
-            group="how dense",
-        ),
+        density_,
+        Option("--reach X Y Z ANGLE", reach, number, group=group),
+        Option("--from-edges LENGTH", away, number, group=group),
+        Option("--unobstructed", first, group=group),
+        Option("--slope LEAST MOST", slope, number, group=group),
+        Option("--aspect DIRECTION ANGLE", aspect, number, group=group),
     ]
