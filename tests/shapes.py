@@ -4,6 +4,7 @@ from typing import Any
 
 import gaussmap as gm
 import numpy as np
+from gaussmap.runtime.samples.report import SamplingReport
 
 TURN = (0.0, 2.0 * np.pi)
 LATITUDES = (-np.pi / 2, np.pi / 2)
@@ -38,6 +39,29 @@ def klein(u: Any, v: Any) -> Any:
     ring = 2.0 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)
     height = np.sin(u / 2) * np.sin(v) + np.cos(u / 2) * np.sin(2 * v)
     return np.stack([ring * np.cos(u), ring * np.sin(u), height], axis=-1)
+
+
+def torus_samples(count: int, minor: float = 1.0, scale: float = 1.0, **changes: Any) -> gm.Samples:
+    """Return samples of the torus of radii 2 and `minor`, times `scale`, from its closed form.
+
+    The outer half is elliptic; the normals do not depend on `minor` and `scale`.
+    """
+    u, v = np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, (2, count))
+    normals, circle = np.stack(on_sphere(u, v), axis=1), np.stack(on_sphere(u, 0.0), axis=1)
+    points = scale * (2.0 * circle + minor * normals)
+    along, across = 1.0 / minor, np.cos(v) / (2.0 + minor * np.cos(v))
+    arrays: dict[str, Any] = {
+        "points": points,
+        "normals": normals,
+        "uv": np.stack([u, v], axis=1),
+        "support": np.einsum("ij,ij->i", points, normals),
+        "gaussian_curvature": along * across / scale**2,
+        "mean_curvature": (along + across) / 2.0 / scale,
+        "normal_index": np.arange(count),
+        "patch_index": np.arange(count) // 4,
+        "report": SamplingReport("torus", 8, 12, 4, 0.125, 1),
+    }
+    return gm.Samples(**(arrays | changes))
 
 
 def klein_bottle() -> gm.Surface:

@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ...refusals import refused
+from ...shapes import torus_samples
 
 REPORT = SamplingReport("torus", 8, 12, 4, 0.125, 1)
 FLAT = "of the surface is flat or developable (K = 0), which no set of normals can sample"
@@ -23,25 +24,8 @@ START = f"{AT} (5,012 with K > 0, 5,000 with K < 0)"
 MISFIT: dict[str, Any] = {"developable_share": 0.0, "fit_distance": 1.0696e-5, "fit_rms": 6.0347e-6}
 
 
-def torus(count: Any = 12, **changes: Any) -> Samples:
-    """Points of the torus with radii 2 and 1; the outer half is elliptic."""
-    rng = np.random.default_rng(1)
-    u, v = rng.uniform(0.0, 2.0 * np.pi, (2, count))
-    normals = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=1)
-    points = 2.0 * np.stack([np.cos(u), np.sin(u), np.zeros(count)], axis=1) + normals
-    across = np.cos(v) / (2.0 + np.cos(v))
-    arrays: dict[str, Any] = {
-        "points": points,
-        "normals": normals,
-        "uv": np.stack([u, v], axis=1),
-        "support": np.sum(points * normals, axis=1),
-        "gaussian_curvature": across,
-        "mean_curvature": (1.0 + across) / 2.0,
-        "normal_index": np.arange(count),
-        "patch_index": np.arange(count) // 4,
-        "report": REPORT,
-    }
-    return Samples(**(arrays | changes))
+def torus(count: int = 12, **changes: Any) -> Samples:
+    return torus_samples(count, **changes)
 
 
 def curved(K: object, H: object) -> Samples:

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from itertools import repeat
 from pathlib import Path
 from typing import Any
 
@@ -25,22 +26,15 @@ def doing(what: str) -> gm.Surface:
     """Return a surface that does something bad when it is evaluated."""
 
     def position(u, v):
-        if what == "raises":
-            raise ZeroDivisionError("by hand")
-        if what == "hangs":
-            time.sleep(1000)
-        if what == "exits":
-            os._exit(3)
-        if what == "aborts":
-            os.abort()
-        if what == "is killed":
-            os.kill(os.getpid(), signal.SIGKILL)
-        if what == "takes all memory":
-            np.ones(1 << 40)
-        if what == "takes all memory bit by bit":
-            kept = []
-            while True:
-                kept.append(np.empty(1 << 24))
+        {
+            "raises": lambda: 1 / 0,
+            "hangs": lambda: time.sleep(1000),
+            "exits": lambda: os._exit(3),
+            "aborts": os.abort,
+            "is killed": lambda: os.kill(os.getpid(), signal.SIGKILL),
+            "takes all memory": lambda: np.ones(1 << 40),
+            "takes all memory bit by bit": lambda: [*map(np.empty, repeat(1 << 24))],
+        }[what]()
         return u
 
     return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=what)
@@ -68,7 +62,7 @@ def test_rows_of_what_is_sampled_and_what_fails(tmp_path):
     assert [row["parameters"] for row in rows] == ["", '{"major": 1.0, "minor": 0.35}', *5 * [""]]
     assert {row["angle"] for row in rows} == {None}  # it is not measured
     assert [row["unit_of_length"] for row in rows] == [*6 * [""], "mm"]
-    assert "by hand" in rows[2]["error"]
+    assert "by zero" in rows[2]["error"]
     assert "damaged" in rows[3]["error"]
     assert "missing.step' does not exist" in rows[4]["error"]
     assert all(len(row["content"]) == 64 for row in rows if row["status"] == "ok")
@@ -116,7 +110,7 @@ def test_names_that_are_no_text(tmp_path):
 class TestSlow:
     def test_what_ends_a_process_is_a_row(self, tmp_path):
         kinds = {
-            "raises": "by hand", "hangs": "longer than time_limit (8 s)", "exits": "exit code 3",
+            "raises": "by zero", "hangs": "longer than time_limit (8 s)", "exits": "exit code 3",
             "is killed": "signal 9", "aborts": "signal 6", "takes all memory": "memory",
             "takes all memory bit by bit": "memory",
         }  # fmt: skip
