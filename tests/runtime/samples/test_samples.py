@@ -24,7 +24,7 @@ START = f"{AT} (5,012 with K > 0, 5,000 with K < 0)"
 MISFIT: dict[str, Any] = {"developable_share": 0.0, "fit_distance": 1.0696e-5, "fit_rms": 6.0347e-6}
 
 
-def torus(count: int = 12, **changes: Any) -> Samples:
+def torus(count: Any = 12, **changes: Any) -> Samples:
     return torus_samples(count, **changes)
 
 
