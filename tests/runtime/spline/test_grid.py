@@ -4,7 +4,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
-from ... import refusals
+from ...refusals import refused as is_refused
 
 POINTS = np.random.default_rng(7).random((5, 6, 3))
 HEIGHTS = np.random.default_rng(8).random((5, 6))
@@ -17,7 +17,7 @@ def rng():
 
 def refused(complaint, *arguments, **named):
     """Check that from_grid raises InputError with one line that matches `complaint`."""
-    refusals.refused(complaint, gm.Surface.from_grid, *arguments, **named)
+    is_refused(complaint, gm.Surface.from_grid, *arguments, **named)
 
 
 def order(errors):
