@@ -5,6 +5,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 from gaussmap.runtime.samples.report import SamplingReport
+from scipy.spatial import KDTree
 
 TURN = (0.0, 2.0 * np.pi)
 LATITUDES = (-np.pi / 2, np.pi / 2)
@@ -116,6 +117,29 @@ def same(one: gm.Samples, other: gm.Samples) -> None:
     for name, array in one.arrays().items():
         found = getattr(other, name)
         assert (found.dtype, found.tobytes()) == (array.dtype, array.tobytes()), name
+
+
+def circle(count: int, centre: Any, radius: float) -> Any:
+    """Return the corners (count, 2) of a regular polygon in a circle."""
+    angles = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    return centre + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+
+def normals_at(surface: gm.Surface, uv: Any) -> Any:
+    """Return the unit normals (k, 3) of a surface at parameters (k, 2)."""
+    jets = surface.derivatives(*uv.T)
+    vectors = np.cross(jets[:, 1], jets[:, 2])
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def farthest(samples: gm.Samples, points: Any) -> float:
+    """Return the largest distance from one of `points` to the nearest sample."""
+    return KDTree(samples.points).query(points)[0].max()
+
+
+def widest_angle(samples: gm.Samples, normals: Any) -> float:
+    """Return the largest angle in degrees from one of `normals` to the nearest sample's."""
+    return float(np.degrees(2.0 * np.arcsin(KDTree(samples.normals).query(normals)[0].max() / 2.0)))
 
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])

@@ -9,6 +9,7 @@ import pytest
 from scipy.spatial import KDTree
 
 from ..refusals import refused
+from ..shapes import farthest, widest_angle
 
 AXIS, ANGLE = (1.0, 2.0, 0.5), 35.0
 ROUNDING = 1e-9
@@ -49,11 +50,9 @@ def test_every_request_keeps_to_the_reach_and_its_guarantee(name: str) -> None:
             slack = 6 if how.get("density") == "gauss" else 0
             assert abs(len(samples) - 300) <= slack
         if "coverage" in how:
-            farthest = KDTree(samples.points).query(points)[0].max()
-            assert farthest <= (samples.report.coverage or 0.0) <= how["coverage"]
+            assert farthest(samples, points) <= (samples.report.coverage or 0.0) <= how["coverage"]
         if "angle" in how:
-            chord = KDTree(samples.normals).query(normals)[0].max()
-            assert np.degrees(2.0 * np.arcsin(chord / 2.0)) <= how["angle"]
+            assert widest_angle(samples, normals) <= how["angle"]
 
 
 def test_prescribed_normals_have_the_same_points_as_without_a_reach() -> None:
@@ -178,8 +177,8 @@ def test_slopes_and_aspects_are_sectors_of_normals() -> None:
     slope, aspect = np.degrees(np.arccos(z)), np.degrees(np.arctan2(x, y))
     inside = (slope > 5.0) & (slope < 20.0) & (abs((aspect + 340.0) % 360.0 - 180.0) < 60.0)
     area = inside.mean() * 4.0
-    farthest = KDTree(samples.points[:, :2]).query(np.stack([u, v], axis=1)[inside])[0].max()
-    assert farthest <= 2.0 * np.sqrt(area / 400.0)
+    apart = KDTree(samples.points[:, :2]).query(np.stack([u, v], axis=1)[inside])[0].max()
+    assert apart <= 2.0 * np.sqrt(area / 400.0)
 
 
 @pytest.mark.parametrize(

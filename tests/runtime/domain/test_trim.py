@@ -10,11 +10,10 @@ from gaussmap.runtime.domain.domain import Boundary
 from gaussmap.runtime.domain.loops import checked_loops
 from gaussmap.runtime.domain.trim import Trim
 from scipy.ndimage import binary_dilation
-from scipy.spatial import KDTree
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import same
+from ...shapes import circle, farthest, same, widest_angle
 
 UNIT = ((0.0, 1.0), (0.0, 1.0))
 OPEN: Boundary = (("open", "open"), ("open", "open"))
@@ -42,11 +41,6 @@ def crossings(polygons, places):
                 at = a + (c - a) * (places[:, 1] - b) / (d - b)
             inside ^= spans & (at > places[:, 0])
     return inside
-
-
-def circle(count, centre, radius):
-    angles = np.linspace(0.0, TURN, count, endpoint=False)
-    return centre + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 
 def graph():
@@ -262,19 +256,15 @@ class TestSampling:
         size = 0.15 if name in ("annulus", "seam") else 0.03
         samples = gm.sample(spline, coverage=size)
         assert trim_of(spline).contains(samples.uv).all()
-        promised = samples.report.coverage
-        assert KDTree(samples.points).query(points)[0].max() <= promised <= size
-        found = samples.coverage()
-        assert KDTree(samples.points).query(points)[0].max() <= found
+        assert farthest(samples, points) <= samples.report.coverage <= size
+        assert farthest(samples, points) <= samples.coverage()
 
     @pytest.mark.parametrize("name", PARTS)
     def test_angle_holds_on_the_part(self, name):
         spline, _, normals = inner_points(PARTS[name], (12, 12), 10_000)
         samples = gm.sample(spline, angle=8.0)
         assert trim_of(spline).contains(samples.uv).all()
-        chords = KDTree(samples.normals).query(normals)[0].max()
-        promised = samples.report.angle
-        assert np.degrees(2 * np.arcsin(chords / 2)) <= promised <= 8.0
+        assert widest_angle(samples, normals) <= samples.report.angle <= 8.0
 
     @covering(density=["balanced", "uniform", 0.5, "gauss"], name=PARTS)
     def test_count_is_met(self, name, density):

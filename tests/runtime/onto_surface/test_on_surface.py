@@ -10,7 +10,7 @@ from gaussmap.runtime.onto_surface.on_surface import geometry_of
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import egg, egg_surface, same
+from ...shapes import egg, egg_surface, normals_at, same
 
 CELLS = (12, 12)
 NORMAL_ERROR = 1e-12  # radians
@@ -19,12 +19,6 @@ FIELDS_ON_SPLINE = (
     "patch_index",
 )  # fmt: skip
 FIELDS_ON_SURFACE = (*FIELDS_ON_SPLINE, "on_surface")
-
-
-def normals_at(surface: gm.Surface, uv: np.ndarray) -> np.ndarray:
-    jets = surface.derivatives(*uv.T)
-    vectors = np.cross(jets[:, 1], jets[:, 2])
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 def sines(normals: np.ndarray, others: np.ndarray) -> np.ndarray:

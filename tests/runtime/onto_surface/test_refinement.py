@@ -10,7 +10,7 @@ from gaussmap.runtime.onto_surface.newton import FOUND, Target, evaluate_on_surf
 from gaussmap.runtime.onto_surface.repeats import kept_once
 from numpy.typing import NDArray
 
-from ...shapes import HALF, MERIDIAN, egg, klein, revolved, same
+from ...shapes import HALF, MERIDIAN, egg, klein, normals_at, revolved, same
 
 Array = NDArray[np.float64]
 NORMAL_ERROR = 1e-12  # radians
@@ -31,12 +31,6 @@ def refined(
     )  # fmt: skip
     refine(surface, spline, target, 1)
     return target, samples.normal_index
-
-
-def normals_of(surface: gm.Surface, uv: Array) -> Array:
-    jets = surface.derivatives(*uv.T)
-    normals = np.cross(jets[:, 1], jets[:, 2])
-    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
 def turned(seed: int) -> Array:
@@ -75,7 +69,7 @@ def test_normals_become_the_prescribed_ones(shift: float, factor: float) -> None
     surface = torus.transformed(matrix)
     samples, _ = refined(surface, (24, 16), gm.fibonacci(300))
     assert (samples.state == FOUND).all()
-    assert np.abs(normals_of(surface, samples.uv) - samples.normals).max() < NORMAL_ERROR
+    assert np.abs(normals_at(surface, samples.uv) - samples.normals).max() < NORMAL_ERROR
     rounding = 1e-15 * (factor + shift)
     assert np.abs(surface.evaluate(*samples.uv.T) - samples.points).max() < 2.0 * rounding
     v, minor = samples.uv[:, 1], 0.35
@@ -99,7 +93,7 @@ def test_samples_of_a_coarse_spline_go_on_across_the_ends_of_a_period(sign: floa
     assert (np.bincount(numbers) == 2).all()
     assert (samples.state == FOUND).all()
     assert ((samples.uv >= 0.0) & (samples.uv <= 2.0 * np.pi)).all()
-    assert np.abs(normals_of(surface, samples.uv) - samples.normals).max() < 2.0 * NORMAL_ERROR
+    assert np.abs(normals_at(surface, samples.uv) - samples.normals).max() < 2.0 * NORMAL_ERROR
 
 
 @pytest.mark.filterwarnings("ignore:.*could not be moved")
@@ -144,7 +138,7 @@ def test_next_to_singular_points_normals_are_those_that_are_prescribed() -> None
         samples = gm.sample(surface, normals=gm.icosphere(20), cells=(32, 32))
     there = samples.on_surface
     assert there is not None
-    off = np.abs(normals_of(surface, samples.uv[there]) - samples.normals[there])
+    off = np.abs(normals_at(surface, samples.uv[there]) - samples.normals[there])
     assert off.max() < 1e-9
     # That of a conical point, whose derivatives are rounding, would be about 1e33.
     assert np.abs(samples.gaussian_curvature[there]).max() < 1e8
@@ -178,7 +172,7 @@ def test_a_place_at_the_very_border_is_inside() -> None:
     surface = gm.surfaces.enneper()
     ends = [-1.0, -0.4, 0.3, 1.0]
     uv = np.array([(u, v) for u in ends for v in (-1.0, 1.0)])
-    normals = normals_of(surface, uv)
+    normals = normals_at(surface, uv)
     state = np.empty(len(uv), np.int8)
     _, _, K, H = evaluate_on_surface(surface, gm.fit(surface, (16, 16)), uv)
     start = np.clip(uv + 0.003, -1.0, 1.0)
@@ -193,7 +187,7 @@ def test_flat_points_are_reached_as_far_as_normals_tell() -> None:
     surface = gm.surfaces.monkey_saddle()
     samples, _ = refined(surface, (9, 9), np.array([[0.0, 0.0, 1.0]]))
     found = samples.state == FOUND
-    assert np.abs(normals_of(surface, samples.uv[found]) - [0.0, 0.0, 1.0]).max() < NORMAL_ERROR
+    assert np.abs(normals_at(surface, samples.uv[found]) - [0.0, 0.0, 1.0]).max() < NORMAL_ERROR
     assert np.abs(samples.uv).max() < 0.2
 
 
@@ -233,8 +227,8 @@ def test_the_seam_of_a_moebius_band_is_no_way_through() -> None:
     samples, _ = refined(band, (48, 12), gm.fibonacci(2000))
     found = samples.state == FOUND
     assert found.mean() > 0.9
-    assert (normals_of(band, samples.uv[found]) * samples.normals[found]).sum(axis=1).min() > 0.5
-    assert np.abs(normals_of(band, samples.uv[found]) - samples.normals[found]).max() < NORMAL_ERROR
+    assert (normals_at(band, samples.uv[found]) * samples.normals[found]).sum(axis=1).min() > 0.5
+    assert np.abs(normals_at(band, samples.uv[found]) - samples.normals[found]).max() < NORMAL_ERROR
 
 
 # --- samples that meet ----------------------------------------------------------------------------
@@ -415,7 +409,7 @@ def test_every_normal_of_an_egg_once(shift: float, factor: float) -> None:
     # Far from the origin, differences tell normals to ε |x|/step of a surface of size 1.
     error = 1e-11 if shift == 0.0 else 1e-6
     away = np.abs(np.abs(samples.uv[:, 1]) - np.pi / 2) > 1e-2
-    found = normals_of(moved(egg, 2, 0.0, 1.0), samples.uv[away])
+    found = normals_at(moved(egg, 2, 0.0, 1.0), samples.uv[away])
     assert np.abs(found - samples.normals[away]).max() < error
 
 

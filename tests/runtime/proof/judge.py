@@ -134,6 +134,14 @@ def normals_at(surface: gm.Surface, u: Array, v: Array) -> Array:
     return unit(np.cross(x_u, x_v))
 
 
+def curvature_at(surface: gm.Surface, u: Array, v: Array) -> Array:
+    """Return numbers that have the sign of the Gaussian curvature."""
+    _, x_u, x_v, *second = jets_at(surface, u, v)
+    n = np.cross(x_u, x_v)
+    a, b, c = ((n * x).sum(axis=1) for x in second)
+    return a * c - b * b
+
+
 def kinds(found: ProvedPlaces) -> set[str]:
     return {KINDS[k] for k in found.undecided.kinds}
 

@@ -19,6 +19,7 @@ from .judge import (
     Array,
     check,
     counts,
+    curvature_at,
     index_of,
     jets_at,
     kinds,
@@ -346,13 +347,7 @@ def test_poles_without_a_disc_are_open_for_their_own_normals() -> None:
 
 def fold_points(surface: gm.Surface, count: int) -> tuple[Array, Array]:
     """Return parameters at which K changes its sign, up to rounding."""
-
-    def curvature(u: Array, v: Array) -> Array:
-        _, x_u, x_v, *second = jets_at(surface, u, v)
-        n = np.cross(x_u, x_v)
-        a, b, c = ((n * x).sum(axis=1) for x in second)
-        return a * c - b * b
-
+    curvature = partial(curvature_at, surface)
     (u0, u1), (v0, v1) = surface.domain
     rng = np.random.default_rng(7)
     v = rng.uniform(v0, v1, 200 * count)

@@ -14,11 +14,11 @@ from gaussmap.tools.cad.examples import box, box_faces
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 from gaussmap.tools.cad.results import PartSpace, space_of
-from scipy.spatial import ConvexHull, cKDTree
+from scipy.spatial import ConvexHull
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import same
+from ...shapes import farthest, same, widest_angle
 from . import made
 from .made import HALF, KINDS, UNIT, circle, cylinder_faces, face, noted, part
 
@@ -48,16 +48,6 @@ def points_on_cylinder(count: int = 40_000) -> np.ndarray:
     side = np.stack([np.cos(phi), np.sin(phi), z], axis=1)
     ends = np.stack([r * np.cos(phi), r * np.sin(phi), 2.0 * (z > 1)], axis=1)
     return np.concatenate([side, ends])
-
-
-def gap(samples: gm.Samples, points: np.ndarray) -> float:
-    return float(cKDTree(samples.points).query(points)[0].max())
-
-
-def widest_angle(samples: gm.Samples, normals: np.ndarray) -> float:
-    """Return the largest angle in degrees from a normal to the nearest one of a sample."""
-    chords = cKDTree(samples.normals).query(normals)[0]
-    return float(np.degrees(2 * np.arcsin(chords.max() / 2)))
 
 
 @pytest.mark.parametrize("count", [1, 2, 5, 6, 7, 60, 500])
@@ -97,7 +87,7 @@ def test_samples_are_on_their_faces(plates, density):
 @pytest.mark.parametrize("density", ["balanced", "uniform"])
 def test_coverage_holds_for_the_part(cylinder, coverage, density):
     samples = gm.sample(cylinder, coverage=coverage, density=density)
-    assert gap(samples, points_on_cylinder()) <= samples.report.coverage <= coverage
+    assert farthest(samples, points_on_cylinder()) <= samples.report.coverage <= coverage
     assert samples.coverage() <= samples.report.coverage
     # Squares of half the diagonal cover as much by twice as many samples; edges cost some, and so
     # does the curvature of the side.
@@ -108,7 +98,7 @@ def test_coverage_holds_for_the_part(cylinder, coverage, density):
 def test_count_and_coverage(cylinder):
     samples = gm.sample(cylinder, 200, coverage=0.42)
     assert len(samples) == 200
-    assert gap(samples, points_on_cylinder()) <= samples.report.coverage <= 0.42
+    assert farthest(samples, points_on_cylinder()) <= samples.report.coverage <= 0.42
 
 
 def test_coverage_that_a_count_cannot_reach(cylinder):
@@ -271,7 +261,7 @@ def test_a_narrow_face_keeps_its_coverage(others, is_reversed):
     samples = gm.sample(part([narrow, *others]), coverage=0.1)
     along = np.linspace(0, 1, 2000)
     points = np.stack([along, 0.9999 * along + 5e-5, 0 * along], axis=1)
-    assert gap(samples, points) <= samples.report.coverage <= 0.1
+    assert farthest(samples, points) <= samples.report.coverage <= 0.1
     assert (samples.face_index == 0).sum() >= 1
 
 
@@ -284,7 +274,7 @@ def test_coverage_holds_where_a_hole_touches_the_border(inner):
     samples = gm.sample(part([narrow]), coverage=0.02, density="uniform")
     borders = np.concatenate([x + t * (np.roll(x, -1, 0) - x) for x in loops for t in (0, 0.5)])
     points = np.column_stack([borders, np.zeros(len(borders))])
-    assert gap(samples, points) <= 1.001 * samples.report.coverage <= 1.001 * 0.02
+    assert farthest(samples, points) <= 1.001 * samples.report.coverage <= 1.001 * 0.02
 
 
 def test_failed_faces_are_left_out():

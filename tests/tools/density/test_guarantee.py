@@ -10,11 +10,10 @@ from gaussmap.tools.density import cover, deviation, filling
 from gaussmap.tools.density.cells import Cells
 from gaussmap.tools.density.space import Space
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import moved
+from ...shapes import farthest, moved, widest_angle
 
 pytestmark = pytest.mark.compiled
 
@@ -27,15 +26,6 @@ def places(spline: gm.Spline, number: int = 200) -> tuple[Array, Array]:
     points, normals = spline.evaluate(u[:, None], v), spline.normals(u[:, None], v)
     regular = np.isfinite(normals).all(axis=2)
     return points[regular], normals[regular]
-
-
-def farthest(samples: gm.Samples, points: Array) -> float:
-    return float(KDTree(samples.points).query(points)[0].max())
-
-
-def widest_angle(samples: gm.Samples, normals: Array) -> float:
-    chord = float(KDTree(samples.normals).query(normals)[0].max())
-    return math.degrees(2.0 * math.asin(chord / 2.0))
 
 
 def even(name: str, cells: tuple[int, int]) -> tuple[int, int]:

@@ -8,14 +8,11 @@ import pytest
 import shapely
 from gaussmap.tools.meshes.border import border_lines
 
+from ...shapes import circle
+
 pytestmark = pytest.mark.compiled
 
 TURN = 2.0 * np.pi
-
-
-def circle(count, centre, radius):
-    angles = np.linspace(0.0, TURN, count, endpoint=False)
-    return centre + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 
 def plane(u, v):

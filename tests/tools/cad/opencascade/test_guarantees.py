@@ -35,6 +35,7 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeRevol
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Vec
 from OCP.TopoDS import TopoDS
 
+from ....shapes import widest_angle
 from . import shapes
 from .conftest import written
 from .shapes import (
@@ -192,12 +193,6 @@ def judged(path: Path, folder: Path) -> SimpleNamespace:
     return SimpleNamespace(part=part, points=points * factor, normals=normals, size=size * factor)
 
 
-def widest_angle(on: SimpleNamespace, samples: gm.Samples) -> float:
-    """Return the largest angle in degrees from a normal to the nearest one of a sample."""
-    chords = KDTree(samples.normals).query(on.normals)[0]
-    return float(np.degrees(2.0 * np.arcsin(chords.max() / 2.0)))
-
-
 def widest_gap(on: SimpleNamespace, samples: gm.Samples) -> float:
     """Return the largest distance of a place from the nearest sample on its side."""
     found, left = np.full(len(on.points), np.inf), np.arange(len(on.points))
@@ -221,7 +216,7 @@ def check_angle(on: SimpleNamespace, asked: float) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gm.GaussmapWarning)  # the report says what was reached
         samples = gm.sample(on.part, angle=asked, fields=FIELDS)
-    assert widest_angle(on, samples) <= SLACK * samples.report.angle + 1e-6
+    assert widest_angle(samples, on.normals) <= SLACK * samples.report.angle + 1e-6
     assert samples.report.angle <= 1.1 * asked
 
 
