@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 # Gaps wider than WIDEST are edges. An edge is straight in the parameters of a face if it is nowhere
 # off a straight line by more than STRAIGHT times the domain.
 WIDEST, STRAIGHT = math.radians(CREASE_ANGLE), 1e-12
-# A face is developable where the larger radius of curvature exceeds FLAT times the size of edges.
-# Coordinates rounded to 6 digits bend a developable face less than that.
+# A face is developable where the larger radius of curvature exceeds FLAT times the size of edges:
+# coordinates rounded to 7 digits bend it less than that.
 FLAT = 1e6
 # Gaps are measured at MEASURED points of an edge. Normals along it are known at PLACES places; if
 # neighbours differ by more than JUMP, the edge has a pole or a corner between them.

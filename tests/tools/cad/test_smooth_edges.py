@@ -101,13 +101,18 @@ def test_gaps_are_filled_beside_what_is_left():
     assert len(samples) == samples.report.samples > 50
 
 
+def circle() -> np.ndarray:
+    """Return x, y and weights (3, 7) of a circle of three rational spans."""
+    angles, radii = np.arange(7) * np.pi / 3.0, 1.0 + np.arange(7) % 2
+    return np.stack([radii * np.cos(angles), radii * np.sin(angles), 1.0 / radii])
+
+
 def torus_net(digits: int, *, flat: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """Return points and weights of a tilted torus of 3 × 3 rational spans, with some digits.
 
     A flat one has its circles around the axis along v; the normals of each are close together.
     """
-    angles, radii = np.arange(7) * np.pi / 3.0, 1.0 + np.arange(7) % 2
-    x, y, weights = radii * np.cos(angles), radii * np.sin(angles), 1.0 / radii
+    x, y, weights = circle()
     reach, height = 1.0 + 0.4 * x, np.broadcast_to(0.4 * y, (7, 7))
     points = np.dstack([np.outer(x, reach), np.outer(y, reach), height])
     if flat:
@@ -229,3 +234,27 @@ def test_normals_between_those_of_both_sides_have_a_point_there(row, flat, least
     np.testing.assert_array_equal(regular[known & ~(between & wide)], 1)
     assert np.isin(regular[known], [0, 1, 2]).all()
     np.testing.assert_array_equal(gauss_map.degree(normals)[known], 0)
+
+
+def test_faces_are_developable_up_to_their_digits():
+    """The Gaussian curvature of a cone of 7 digits is rounding, that of a bowl of 8 is not."""
+    x, y, weights = circle()
+    points = np.stack([np.outer(x, [1, 2]), np.outer(y, [1, 2]), np.tile([0, 1], (7, 1))], 2)
+    points, along = (points @ TILT.T).round(7), ([0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 2, 2, 2])
+    cone = [
+        gm.Surface.from_nurbs(
+            (2, 1), (k, [0, 0, 1, 1]), points[some], np.outer(weights, [1, 1])[some]
+        )
+        for k, some in zip(along, (slice(0, 3), slice(2, 7)), strict=True)
+    ]
+    angles = 2.0 * np.pi / 3.0 + np.linspace(-3e-7, 3e-7, 61)
+    normals = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles - 1.0], axis=1) @ TILT.T
+    samples = gm.GaussMap(gm.Part(cone, tolerance=1e-5)).points([*normals, *-normals])
+    assert (len(samples), samples.report.undecided) == (0, ())
+    row, squares = np.array([-1, -0.5, 0, 0.5, 1]), np.array([1, 0, 0, 0, 1])
+    shape = np.broadcast_arrays(row[:, None], [-1, 0, 1], (squares[:, None] + [1, -1, 1]) / 200.0)
+    points, clamped = (np.stack(shape, axis=2) @ TILT.T).round(8), [0, 0, 0, 1, 1, 1]
+    bowl = [gm.Surface.from_nurbs((2, 2), (clamped,) * 2, points[k : k + 3]) for k in (0, 2)]
+    y, across = (x.ravel() for x in np.meshgrid(np.linspace(-0.9, 0.9, 41), [-1e-8, 0.0, 3e-9]))
+    normals = np.stack([across, -y / 100.0, 1.0 + 0.0 * y], axis=1) @ TILT.T
+    assert (gm.GaussMap(gm.Part(bowl, tolerance=1e-5)).degree(normals) == 1).all()
