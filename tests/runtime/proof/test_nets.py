@@ -289,7 +289,7 @@ def test_degrees_of_rounded_parts(digits: int, step: int, rows: list[tuple[int, 
     normals = [-corners, *(-x + size * gm.fibonacci(10) for x in corners for size in (1e-8, 3e-8))]
     for face in faces:
         (u0, u1), (v0, _) = face.domain
-        jets = face.jets(u0 + (u1 - u0) * np.arange(1, 16) / 16.0, np.full(15, v0))
+        jets = face.jets(np.linspace(u0, u1, 17)[1:-1], np.full(15, v0))
         at_edge = -unit(np.cross(jets[:, 1], jets[:, 2]))
         normals += [at_edge + size * gm.fibonacci(15) for size in (0.0, 1e-10, 1e-9)]
     given = unit(np.concatenate(normals))
