@@ -42,7 +42,8 @@ from .poles import Cap, poles_of
 # Cells that are not regular (`is_done` in kernels/cell_bounds.py) are cut into four, at most LEVELS
 # times. Then cells without a narrow cone of normals are cut into four, in at most ROUNDS rounds, as
 # long as all rounds together add at most MOST · max(k, FEWEST) cells, where the grid has k cells.
-# FEWEST is for the coarse grids of NURBS, whose cells may be knot spans.
+# FEWEST is for the coarse grids of NURBS, whose cells may be knot spans: there is one more round
+# for grids with fewer cells.
 LEVELS, ROUNDS, MOST, FEWEST = 2, 3, 8, 256
 CELLS = (64, 64)
 # Whether a surface has normals at all is tested on PROBES cells, shrunk by the factor SMALL.
@@ -191,7 +192,8 @@ class ProvedIndex:
         if _has_no_normals(tape, grid):
             return None
         cut = _cut(tape, grid, LEVELS, threads)
-        cut = _narrowed(tape, cut, len(cut.place) + MOST * max(len(grid), FEWEST), threads)
+        rounds = ROUNDS + (len(grid) < FEWEST)
+        cut = _narrowed(tape, cut, rounds, len(cut.place) + MOST * max(len(grid), FEWEST), threads)
         blind = cut.noise[:, REACH] == 0.0
         u, v, h_u, h_v = cut.place[blind].T
         unbounded = np.vstack(
@@ -473,10 +475,12 @@ def _cut(tape: Tape, places: Array, levels: int, threads: int | None) -> CellBou
     return _joined(parts)
 
 
-def _narrowed(tape: Tape, cells: CellBounds, most: int, threads: int | None) -> CellBounds:
+def _narrowed(
+    tape: Tape, cells: CellBounds, rounds: int, most: int, threads: int | None
+) -> CellBounds:
     """Return at most `most` cells, after cutting those without a narrow cone of normals."""
     done = list[CellBounds]()
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         wide = cells.cone[:, 3] >= WIDE
         parts = _quarters(cells.place[wide])
         most -= len(cells.place) - wide.sum()
