@@ -6,7 +6,7 @@ from .formula import Formula, Parts, formula
 from .notation import Cross, Dot, scalar, vectors
 
 p0, p1, p2, n0, n1, n2 = vectors(("p0", "p1", "p2", "n0", "n1", "n2"))
-e, f, g, N = vectors(("e", "f", "g", "N"))
+e, f, g, N, d, p, h, q, s = vectors(("e", "f", "g", "N", "d", "p", "h", "q", "s"))
 r, k, beta = scalar("r"), scalar("k"), scalar("beta")
 
 CORNER_PRODUCTS = Formula.build(
@@ -62,4 +62,17 @@ def EDGE_OVER_SURFACE() -> Parts:
     )
 
 
-FORMULAS = (CORNER_PRODUCTS, CORNER_COTANGENTS, BORDER_SPACING, EDGE_OVER_SURFACE)
+RAY_IN_TRIANGLE = Formula.build(
+    "ray_in_triangle",
+    "Where a ray, $p + T/D d$, meets the plane of a triangle, $p0 + U/D (p1 - p0) + V/D (p2 - "
+    "p0)$. $D$ is positive if the ray comes from the side from which $p0$, $p1$, $p2$ are "
+    "anticlockwise.",
+    inputs=[p, d, p0, p1, p2],
+    terms=[("e", p1 - p0), ("f", p2 - p0), ("s", p - p0), ("h", Cross(d, f)), ("q", Cross(s, e))],
+    outputs=[("D", Dot(e, h)), ("U", Dot(s, h)), ("V", Dot(d, q)), ("T", Dot(f, q))],
+)
+
+
+FORMULAS = (
+    CORNER_PRODUCTS, CORNER_COTANGENTS, BORDER_SPACING, EDGE_OVER_SURFACE, RAY_IN_TRIANGLE,
+)  # fmt: skip

@@ -17,12 +17,12 @@ from ..runtime.base.errors import InputError, shown
 from ..runtime.base.progress import busy
 from ..runtime.samples.samples import Samples, spline_or
 from ..runtime.samples.whole import Whole
+from ..runtime.surface.surface import Surface
 
 if TYPE_CHECKING:
     import trimesh
 
     from ..runtime.spline.nets import AnySpline
-    from ..runtime.surface.surface import Surface
     from .cad.part import Part
     from .gauss_map.silhouette import Silhouette
     from .meshes.mesh import Mesh
@@ -336,7 +336,10 @@ def offset(self: Samples, distance: float, *, trimmed: bool = False) -> Samples:
 
 
 def unobstructed(
-    self: Samples, distance: float, *, by: Part | Mesh | trimesh.Trimesh | None = None
+    self: Samples,
+    distance: float,
+    *,
+    by: Part | Surface | Mesh | trimesh.Trimesh | None = None,
 ) -> NDArray[np.bool_]:
     """Return which samples a probe can reach from a distance, along their normals.
 
@@ -348,13 +351,13 @@ def unobstructed(
     Parameters
     ----------
     distance : float
-        The distance d, in L.
-    by : Part, Mesh or trimesh.Trimesh, optional
-        The obstacle: by default the part or surface of the samples. A part becomes a mesh of 20,000
-        vertices, as ``gm.sample(part, 20_000).mesh()``, or of more if it has very many edges; the
-        mesh is made once, and stored with the part. For faces selected by `Part.select`, the
-        obstacle is the whole part, unless the selection was read from a file. For a clamp or a
-        table, give its mesh.
+        The distance d, in L; infinity for the whole ray.
+    by : Part, Surface, Mesh or trimesh.Trimesh, optional
+        The obstacle: by default the part or surface of the samples. A part or surface becomes a
+        mesh of 20,000 vertices, as ``gm.sample(part, 20_000).mesh()``, or of more if it has very
+        many edges; the mesh is made once, and stored with the part. For faces selected by
+        `Part.select`, the obstacle is the whole part, unless the selection was read from a file.
+        For a clamp or a table, give its mesh.
 
     Returns
     -------
@@ -369,11 +372,12 @@ def unobstructed(
     MissingFieldError
         Unless the samples have the fields points and normals.
     MissingExtraError
-        Without the extra `rays`, of a part also without the extra `mesh`.
+        Of a part, without the extra `mesh`.
 
     See Also
     --------
     offset : the points at the other ends of the segments.
+    Reach : with `clearance`, samples only where the segment is free.
 
     Examples
     --------
@@ -384,25 +388,29 @@ def unobstructed(
     >>> samples.points.round(2) + 0.0
     array([[ 1.35,  0.  ,  0.  ],
            [-0.65,  0.  ,  0.  ]])
-    >>> torus = gm.sample("torus", 2000).mesh()
-    >>> samples.unobstructed(1.2, by=torus), samples.unobstructed(1.4, by=torus)
+    >>> samples.unobstructed(1.2), samples.unobstructed(1.4)
     (array([ True,  True]), array([ True, False]))
 
     """
-    from .files.lengths import whole_of
-    from .meshes.rays import check_rays
-    from .meshes.rays import unobstructed as are_free
+    from .meshes.rays import obstacle_from
 
-    far = positive_number(distance, "distance")
-    check_rays()
+    far = positive_number(distance, "distance", infinite=True)
     if by is None:
-        by = cast("Part | None", whole_of(self)) or self.mesh()
-    if isinstance(by, Whole):
+        base = self if self.offset_of is None else self.offset_of
+        by = cast("Part | Surface | None", base.surface) or self.mesh()
+    if isinstance(by, Whole | Surface):
         from .cad.obstacle import obstacle_of
 
-        by = obstacle_of(cast("Part", by))
+        obstacle = obstacle_of(cast("Part | Surface", by))
+    else:
+        obstacle = obstacle_from(by)
+    if not obstacle.closed:
+        raise InputError(
+            "rays need a closed obstacle, whose triangles say which side is outside, and this one "
+            "is open; give the whole part, or a closed mesh, as in unobstructed(5.0, by=part)."
+        )
     points, normals = (x.astype(np.float64) for x in (self.points, self.normals))
-    return are_free(points, normals, far, by)
+    return obstacle.are_free(points, normals, far)
 
 
 def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
@@ -429,8 +437,6 @@ def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
         For an object that is no mesh, and as `mesh`.
     MissingFieldError
         Unless the samples have the fields points and normals.
-    MissingExtraError
-        Without the extra `rays`.
 
     See Also
     --------
@@ -448,11 +454,9 @@ def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
 
     """
     from .meshes.mesh import Mesh
-    from .meshes.rays import check_rays
     from .meshes.rays import visible as are_seen
     from .sampling.sample import sample
 
-    check_rays()
     points, normals = (x.astype(np.float64) for x in (self.points, self.normals))
     if not len(points):
         return np.zeros(0, np.bool_)

@@ -164,13 +164,18 @@ def finite_number(value: SupportsFloat, name: str) -> float:
     return number
 
 
-def positive_number(value: object, name: str, unit: str = "", most: float = math.inf) -> float:
-    """Return a positive number up to `most`; InputError, with `name`, for any other value."""
+def positive_number(
+    value: object, name: str, unit: str = "", most: float = math.inf, *, infinite: bool = False
+) -> float:
+    """Return a positive number up to `most`; InputError, with `name`, for any other value.
+
+    Infinity is refused unless `infinite` is true.
+    """
     number = math.nan
     if isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool):
         with suppress(OverflowError):  # from whole numbers beyond float64
             number = float(value)
-    if not 0.0 < number <= most or math.isinf(number):
+    if not 0.0 < number <= most or (math.isinf(number) and not infinite):
         limit = "" if math.isinf(most) else f" of at most {most:g}{unit}"
         raise InputError(f"{name} must be a positive number{limit}, not {shown(value)}.")
     return number

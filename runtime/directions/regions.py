@@ -57,10 +57,10 @@ class Condition(Protocol):
 
     def may_change(
         self, points: NDArray[np.float64], radii: NDArray[np.float64]
-    ) -> NDArray[np.bool_]:
+    ) -> NDArray[np.bool_] | None:
         """Return for each ball whether the condition may hold in one part and fail in another.
 
-        The k balls have the centres `points` (k, 3) and the `radii` (k,).
+        The k balls have the centres `points` (k, 3) and the `radii` (k,). None means unknown.
         """
         ...
 
@@ -87,11 +87,14 @@ class Reach:
         For CAD parts and closed surfaces: only points that a ray from outside along the axis
         reaches before it meets the part or surface elsewhere. This is tested with a mesh, as in
         `Samples.unobstructed`. Faces that were selected from a part are tested with the whole part.
+    clearance : float, optional
+        The least free length, in L, along the normal of the point: only points for which
+        `Samples.unobstructed` of this distance is true. With infinity, the whole ray is free.
 
     Raises
     ------
     InputError
-        For an unusable axis, angles out of range, and a distance that is not positive.
+        For an unusable axis, angles out of range, and distances that are not positive.
 
     Examples
     --------
@@ -116,6 +119,7 @@ class Reach:
         aspect: Sequence[float] | None = None,
         from_edges: float | None = None,
         unobstructed: bool = False,
+        clearance: float | None = None,
     ) -> None:
         degrees = positive_number(angle, "the angle of reach", " degrees", most=180.0)
         caps = [Cap(unit_vector(axis, "the axis of reach"), degrees)]
@@ -131,6 +135,9 @@ class Reach:
         self._caps = tuple(x for x in caps if x.angle < 180.0 or len(caps) == 1)
         self._from_edges = None if from_edges is None else positive_number(from_edges, "from_edges")
         self._along = caps[0].axis if yes_or_no(unobstructed, "unobstructed") else None
+        self._clearance = (
+            None if clearance is None else positive_number(clearance, "clearance", infinite=True)
+        )
         # Conditions that depend on the whole surface; see `_on`.
         self._conditions: tuple[Condition, ...] = ()
 
@@ -138,10 +145,14 @@ class Reach:
     def _of(cls, numbers: Sequence[float]) -> Reach:
         """Return the reach that has the given `_numbers`."""
         rows = np.array(numbers, dtype=np.float64).reshape(-1, 4)
-        at_edges, along = ~rows[:, :3].any(axis=1), rows[:, 3] == FREE
-        found = cls(from_edges=float(rows[at_edges, 3].max()) if at_edges.any() else None)
-        found._along = unit_vector(rows[along][0, :3], "the axis of reach") if along.any() else None
-        caps = rows[~at_edges & ~along]
+        lengths = rows[~rows[:, :3].any(axis=1), 3].tolist()
+        axes = rows[rows[:, :3].any(axis=1)]
+        found = cls(
+            from_edges=max((x for x in lengths if x > 0.0), default=None),
+            clearance=max((-x for x in lengths if x < 0.0), default=None),
+        )
+        caps, along = axes[axes[:, 3] != FREE], axes[axes[:, 3] == FREE]
+        found._along = unit_vector(along[0, :3], "the axis of reach") if len(along) else None
         found._caps = tuple(cap for x in caps for cap in cls(x[:3], float(x[3]))._caps)
         return found
 
@@ -150,12 +161,22 @@ class Reach:
         """Four numbers for each condition.
 
         These are the unit vector of the axis and the angle of each cap, then 0, 0, 0 and the
-        distance from edges, then the axis of unobstructed rays and `FREE`.
+        distance from edges, then the axis of unobstructed rays and `FREE`, then 0, 0, 0 and the
+        clearance, as a negative number.
         """
         numbers = [x for cap in self._caps for x in (*cap.axis.tolist(), cap.angle)]
         away = () if self._from_edges is None else (0.0, 0.0, 0.0, self._from_edges)
         free = () if self._along is None else (*self._along.tolist(), FREE)
-        return *numbers, *away, *free
+        clear = () if self._clearance is None else (0.0, 0.0, 0.0, -self._clearance)
+        return *numbers, *away, *free, *clear
+
+    @property
+    def _rays(self) -> list[tuple[NDArray[np.float64] | None, float]]:
+        """The axis and the length of rays that have to be free; None for those along normals."""
+        found = list[tuple[NDArray[np.float64] | None, float]]()
+        found += [] if self._along is None else [(self._along, math.inf)]
+        found += [] if self._clearance is None else [(None, self._clearance)]
+        return found
 
     def _on(self, conditions: Sequence[Condition]) -> Reach:
         """Return a copy of the reach with conditions on the points of one surface or part."""
@@ -194,12 +215,15 @@ class Reach:
             for cap in self._caps
             if cap.angle < 180.0
         ]
+        unit = f" {unit or ''}".rstrip()
         if distance := self._from_edges:
-            unit = f" {unit or ''}".rstrip()
             more = error is not None and error > WORTH_NAMING * distance
             plus = f" + {error:.2g}{unit} (their error)" if more else ""
             said.append(f"at least {distance:g}{unit}{plus} from edges")
         said += [] if self._along is None else ["unobstructed"]
+        if length := self._clearance:
+            free = "" if math.isinf(length) else f" for {length:g}{unit}"
+            said.append(f"free along the normal{free}")
         return ", ".join(said) or "all normals"
 
     def __repr__(self) -> str:

@@ -135,6 +135,19 @@ def places_in(domain: Domain, count: int) -> tuple[NDArray[np.float64], NDArray[
     return u, v
 
 
+def places_in_cells(domain: Domain, cells: tuple[int, int], shift: float) -> NDArray[np.float64]:
+    """Return a grid of parameters in m × n cells.
+
+    If `shift` is 0, these are all corners (m + 1, n + 1, 2) of cells. Else there is one point for
+    each cell, (m, n, 2): its distance from the lower corner is `shift`, in cells, along u and v.
+    """
+    u, v = (
+        low + (high - low) * ((np.arange(count + (shift == 0.0)) + shift) / count)
+        for (low, high), count in zip(domain, cells, strict=True)
+    )
+    return np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)
+
+
 def brought_inside(
     u: NDArray[np.float64], v: NDArray[np.float64], domain: Domain, boundary: Boundary
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

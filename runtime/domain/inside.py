@@ -13,8 +13,8 @@ from .kernels.trim import to_cells
 from .trim import Trim
 
 # A patch is divided into equal triangles, whose centroids are tested: FINEST² triangles for patches
-# at the boundary of the trim. Other patches are one triangle each; they are COARSE² triangles if
-# the trim cannot tell which cells its boundary passes.
+# at the boundary of the trim. Other patches are one triangle each; they are COARSE² triangles where
+# the trim cannot tell whether its boundary passes.
 COARSE, FINEST = 4, 8
 POINTS_AT_A_TIME = 1 << 20
 
@@ -36,14 +36,15 @@ class Inside:
 
         `frame` is the lower corner u₀, v₀ of the domain, and the size of a cell along u and v.
         """
-        passed, all_known = trim.cells_of_border(trim.domain, cells)
+        passed, unknown = trim.cells_of_border(trim.domain, cells)
         number = np.arange(4 * cells[0] * cells[1])
 
         def shares_of(patches: Indices, parts: int) -> Array:
             return _shares(trim, frame, cells[1], patches, parts)
 
-        shares = shares_of(number, 1 if all_known else COARSE)
-        if not all_known:
+        unsure, shares = np.repeat(unknown.ravel(), 4), shares_of(number, 1)
+        if unsure.any():
+            shares[unsure] = shares_of(number[unsure], COARSE)
             least, most = extremes_around(shares.reshape(*cells, 4))
             passed |= (least < 1.0) & (most > 0.0)
         cut = np.repeat(passed.ravel(), 4)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..base.aliases import Array, Flags
 from ..base.errors import InputError, SurfaceError, shown
 from ..base.evaluation import called
-from .domain import Boundary, Domain, brought_inside, domain_text
+from .domain import Boundary, Domain, brought_inside, domain_text, places_in_cells
 from .loops import Loops, checked_loops
 
 POINTS_AT_A_TIME = 1 << 20
@@ -106,14 +106,14 @@ class Trim:
         """
         u, v = uv.T
         wrapped = np.stack(brought_inside(u, v, self.domain, self.boundary), axis=1)
-        inside = self.parts[0].contains(wrapped, threads)
-        for part in self.parts[1:]:
+        inside = np.ones(len(uv), dtype=np.bool_)
+        for part in self.parts:
             if inside.any():
                 inside[inside] = part.contains(wrapped[inside], threads)
         return inside
 
-    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> tuple[Flags, bool]:
-        """Return the cells that the boundary may intersect, and whether these are all such cells.
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> tuple[Flags, Flags]:
+        """Return the cells that known boundaries may intersect, and those with unknown boundaries.
 
         Parameters
         ----------
@@ -125,27 +125,30 @@ class Trim:
         Returns
         -------
         (m, n) bool array
-            True for each cell that the boundary may intersect.
-        bool
-            False if there is a predicate, whose boundary is unknown.
+            True for each cell that the boundary of a polygon, or another known one, may intersect.
+        (m, n) bool array
+            True for each cell in which a predicate may change, whose boundary is unknown. These
+            are all cells inside the known boundaries.
 
         Examples
         --------
         >>> import gaussmap as gm
         >>> corner = gm.surfaces.sphere().trimmed([[(1, 1), (1.1, 1), (1, 1.1)]])
-        >>> passed, all_known = corner.trim.cells_of_border(corner.domain, (20, 20))
-        >>> int(passed.sum()), all_known
-        (9, True)
+        >>> passed, unknown = corner.trim.cells_of_border(corner.domain, (20, 20))
+        >>> int(passed.sum()), int(unknown.sum())
+        (9, 0)
 
         """
-        passed, all_known = np.zeros(cells, dtype=np.bool_), True
-        for part in self.parts:
-            found = part.cells_of_border(domain, cells)
-            if found is None:
-                all_known = False
-            else:
-                passed |= found
-        return passed, all_known
+        found = [part.cells_of_border(domain, cells) for part in self.parts]
+        known = [x for x in found if x is not None]
+        passed = np.logical_or.reduce([np.zeros(cells, dtype=np.bool_), *known])
+        if len(known) == len(found):
+            return passed, np.zeros(cells, dtype=np.bool_)
+        parts = [x for x, y in zip(self.parts, found, strict=True) if y is not None]
+        inside = replace(self, parts=tuple(parts)).contains(
+            places_in_cells(domain, cells, 0.5).reshape(-1, 2)
+        )
+        return passed, inside.reshape(cells) & ~passed
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
         """Return whether boxes are inside the trim (1), outside (−1), or undecided (0).

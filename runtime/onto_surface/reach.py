@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags
 from ..directions.regions import Cap, Condition, Reach
-from ..domain.domain import Domain
+from ..domain.domain import Domain, places_in_cells
 from ..domain.trim import trimmed
 from ..spline.spline import Spline
 from ..surface.derivatives import normals_of_jets
@@ -45,7 +45,9 @@ class InReach:
         of each cell. Its range in the cell is assumed to be that of these values, extended on both
         sides by the length of this range.
         """
-        nodes, middles = (self._cosines(_places(domain, cells, shift)) for shift in (0.0, 0.5))
+        nodes, middles = (
+            self._cosines(places_in_cells(domain, cells, shift)) for shift in (0.0, 0.5)
+        )
         nodes = [nodes[i : i + cells[0], j : j + cells[1]] for i in (0, 1) for j in (0, 1)]
         known = np.stack([*nodes, middles[: cells[0], : cells[1]]])
         low, high = known.min(axis=0), known.max(axis=0)
@@ -82,13 +84,15 @@ class OnPoints:
         jets = self.jets(*uv.T.copy())
         return self.condition.holds(jets[:, 0], normals_of_jets(jets))
 
-    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags:
-        """Return the cells (m, n) in which the condition may begin or end."""
-        nodes, middles = (self._points(_places(domain, cells, shift)) for shift in (0.0, 0.5))
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
+        """Return the cells (m, n) in which the condition may begin or end, None if unknown."""
+        nodes, middles = (
+            self._points(places_in_cells(domain, cells, shift)) for shift in (0.0, 0.5)
+        )
         corners = [nodes[i : i + cells[0], j : j + cells[1]] for i in (0, 1) for j in (0, 1)]
         radii = np.max([np.linalg.norm(x - middles, axis=-1) for x in corners], axis=0)
         found = self.condition.may_change(middles.reshape(-1, 3), AROUND * radii.ravel())
-        return found.reshape(cells)
+        return None if found is None else found.reshape(cells)
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
         """Return 0 for all boxes (k, 4): nothing is proved."""
@@ -96,19 +100,6 @@ class OnPoints:
 
     def _points(self, places: Array) -> Array:
         return self.jets(*places.reshape(-1, 2).T.copy())[:, 0].reshape(*places.shape[:-1], 3)
-
-
-def _places(domain: Domain, cells: tuple[int, int], shift: float) -> Array:
-    """Return a grid of parameters in m × n cells.
-
-    If `shift` is 0, these are all corners (m + 1, n + 1, 2) of cells. Else there is one point for
-    each cell, (m, n, 2): its distance from the lower corner is `shift`, in cells, along u and v.
-    """
-    u, v = (
-        low + (high - low) * ((np.arange(count + (shift == 0.0)) + shift) / count)
-        for (low, high), count in zip(domain, cells, strict=True)
-    )
-    return np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)
 
 
 def reached(
@@ -129,6 +120,14 @@ def with_conditions(whole: Whole, jets: Evaluated, reach: Reach) -> Whole:
     if not conditions:
         return whole
     return replace(whole, trim=trimmed(whole.trim, whole.domain, whole.boundary, *conditions))
+
+
+def without_reach(surface: Surface) -> Surface:
+    """Return a surface, trimmed to the part in a reach, without the conditions of the reach."""
+    if surface.trim is None:
+        return surface
+    given = tuple(x for x in surface.trim.parts if not isinstance(x, InReach | OnPoints))
+    return replace(surface, trim=replace(surface.trim, parts=given) if given else None)
 
 
 def in_reach(surface: Surface | None, reach: Reach | None) -> Surface | None:

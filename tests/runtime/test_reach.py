@@ -189,6 +189,7 @@ def test_slopes_and_aspects_are_sectors_of_normals() -> None:
         ({"slope": 20}, "slope"),
         ({"angle": 0}, "the angle of reach"),
         ({"from_edges": 0.0}, "from_edges must be a positive number"),
+        ({"clearance": 0.0}, "clearance must be a positive number"),
     ],
 )
 def test_unusable_slopes_and_aspects(given: dict[str, Any], message: str) -> None:

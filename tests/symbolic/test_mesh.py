@@ -47,3 +47,11 @@ def test_corner_cotangents_are_those_of_the_angles():
     assert found == {"c0": 4, "c1": 0, "c2": 4, "L": 4}
     found = values("corner_cotangents", components(p0=(0, 2, 1), p1=(1, 0, 1), p2=(-1, 0, 1)))
     assert found == {"c0": 3, "c1": 2, "c2": 2, "L": 4}
+
+
+def test_a_ray_meets_a_triangle_where_the_formula_says():
+    """From (1, 1, 4) along (0, 0, −2): 2 steps to (1, 1, 0), from the outer side."""
+    corners = components(p0=(0, 0, 0), p1=(4, 0, 0), p2=(0, 2, 0))
+    found = values("ray_in_triangle", components(p=(1, 1, 4), d=(0, 0, -2)) | corners)
+    assert [found[x] / found["D"] for x in "UVT"] == [sp.Rational(1, 4), sp.Rational(1, 2), 2]
+    assert found["D"] > 0

@@ -1,10 +1,13 @@
 """The mesh of a part as an obstacle: rays are tested for intersections with it."""
 
+from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.kept import kept
+from ...runtime.onto_surface.reach import without_reach
+from ...runtime.surface.surface import Surface
+from ..meshes.rays import Obstacle
 from .mesh_edges import MeshEdges
 from .mesh_spacing import Spacing
 from .part import Part
-from .part_mesh import PartMesh
 from .part_meshing import mesh_of_part
 from .results import space_of
 from .selection import whole_part
@@ -13,17 +16,28 @@ from .selection import whole_part
 VERTICES = 20_000
 
 
-def obstacle_of(part: Part) -> PartMesh:
-    """Return the mesh of a part, cached with the part; raises InputError and warns as meshes do.
+def obstacle_of(given: Part | Surface) -> Obstacle:
+    """Return the mesh of a part or surface, cached with it; raises and warns as meshes do.
 
-    If the part was selected from another part in this session, the mesh is that of the whole part.
+    If a part was selected from another part in this session, the mesh is that of the whole part;
+    of a surface that is trimmed to a reach, it is that of the whole surface. Triangles face where
+    normals point, also if these point into a closed surface.
     """
-    whole = whole_part(part)
-    return kept(whole, obstacle_of, lambda: _made(whole))
+    if isinstance(given, Surface):
+        return kept(given, obstacle_of, lambda: _of_surface(without_reach(given)))
+    whole = whole_part(given)
+    return kept(whole, obstacle_of, lambda: Obstacle.of(*_mesh_of(whole)))
 
 
-def _made(part: Part) -> PartMesh:
+def _of_surface(surface: Surface) -> Obstacle:
+    part = Part([surface], name=surface.name)
+    vertices, triangles = _mesh_of(part)
+    return Obstacle.of(vertices, triangles[:, ::-1] if part.faces[0].reversed else triangles)
+
+
+def _mesh_of(part: Part) -> tuple[Array, Indices]:
     least = 0
     if any(x.wires for x in part.faces):
         least = MeshEdges.of(Spacing(space_of(part, None), VERTICES)).least
-    return mesh_of_part(part, max(VERTICES, 2 * least))
+    mesh = mesh_of_part(part, max(VERTICES, 2 * least))
+    return mesh.vertices, mesh.triangles

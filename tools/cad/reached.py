@@ -18,7 +18,7 @@ from ...runtime.surface.surface import Surface
 from ..density.cells import AREA, runs
 from ..density.kernels.sizing import TargetDensity
 from ..edge_distance import AwayFrom
-from ..meshes.front import FreeAlong
+from ..meshes.rays import Free
 from ..support_points import Segments, lines_of
 from .edges import sides_at
 from .face_pieces import FacePiece
@@ -49,9 +49,7 @@ def _conditions(part: Part, reach: Reach) -> list[Condition]:
     if distance is not None:
         borders = kept(part, borders_of, lambda: borders_of(part))
         found.append(kept(part, (AwayFrom, distance), lambda: AwayFrom.of(borders, distance)))
-    if reach._along is not None:
-        found.append(_free_along(part, reach._along))
-    return [x for x in found if x is not None]
+    return [*(x for x in found if x is not None), *_free(part, reach)]
 
 
 def conditions_of(self: GaussMap, reach: Reach) -> list[Condition]:
@@ -61,23 +59,24 @@ def conditions_of(self: GaussMap, reach: Reach) -> list[Condition]:
         lines = [y for x in on_grids(self._fitted) for y in lines_of(x)]
         borders = [x for x in lines if isinstance(x, Segments) and x.border]
         found.append(AwayFrom.of(borders, reach._from_edges))
-    if reach._along is not None:
-        if not isinstance(surface, Surface):
-            raise InputError("what obstructs a ray is not known of splines: give the surface.")
-        part = kept(surface, Part, lambda: Part([surface], name=surface.name))
-        found.append(_free_along(part, reach._along))
-    return [x for x in found if x is not None]
+    conditions = [x for x in found if x is not None]
+    if not reach._rays:
+        return conditions
+    if not isinstance(surface, Surface):
+        raise InputError("what obstructs a ray is not known of splines: give the surface.")
+    return [*conditions, *_free(surface, reach)]
 
 
-def _free_along(part: Part, axis: Array) -> FreeAlong:
-    """Return the condition that a ray reaches a point of a part; InputError if it is open."""
-    mesh = obstacle_of(part)
-    if len(mesh.boundary_edges):
-        raise InputError(
-            "what obstructs a ray needs a closed part or surface, and this one is open; faces of a "
-            "closed part are chosen with part.select, or --faces."
-        )
-    return kept(part, (FreeAlong, *axis.tolist()), lambda: FreeAlong.of(mesh, axis))
+def _free(whole: Part | Surface, reach: Reach) -> Iterator[Free]:
+    """Yield the conditions on rays from points of a part or surface; InputError if it is open."""
+    for axis, distance in reach._rays:
+        obstacle = obstacle_of(whole)
+        if not obstacle.closed:
+            raise InputError(
+                "what obstructs a ray needs a closed part or surface, and this one is open; faces "
+                "of a closed part are chosen with part.select, or --faces."
+            )
+        yield Free(obstacle, axis, distance)
 
 
 def borders_of(part: Part) -> list[Segments]:

@@ -430,6 +430,10 @@ def _distribution() -> list[Option]:
         "Only points of a CAD part or a closed surface that a ray against the direction of --reach "
         "(default: +z) meets first."
     )
+    free = (
+        "Only points of a CAD part or a closed surface from which the LENGTH along the normal is "
+        "free: inf for the whole ray."
+    )
     slope = "Only where the normal is between LEAST and MOST degrees from +z."
     aspect = (
         "Only slopes that face within ANGLE degrees (90 at most) of a DIRECTION, in degrees "
@@ -443,6 +447,7 @@ def _distribution() -> list[Option]:
         Option("--reach X Y Z ANGLE", reach, number, group=group),
         Option("--from-edges LENGTH", away, number, group=group),
         Option("--unobstructed", first, group=group),
+        Option("--clearance LENGTH", free, number, group=group),
         Option("--slope LEAST MOST", slope, number, group=group),
         Option("--aspect DIRECTION ANGLE", aspect, number, group=group),
     ]

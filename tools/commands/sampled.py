@@ -61,7 +61,10 @@ def request_of(options: SimpleNamespace, default_count: int) -> Request:
     asked = normals, options.count, options.angle, options.coverage
     count = default_count if all(x is None for x in asked) else options.count
     given = vars(options)
-    reach, how = options.reach, {x: given[x] for x in ("slope", "aspect", "from_edges")}
+    reach, how = (
+        options.reach,
+        {x: given[x] for x in ("slope", "aspect", "from_edges", "clearance")},
+    )
     if reach is not None or options.unobstructed or any(x is not None for x in how.values()):
         cap = () if reach is None else (reach[:3], reach[3])
         reach = Reach(*cap, **how, unobstructed=options.unobstructed)

@@ -56,13 +56,11 @@ class Border:
     def _sums(self) -> NDArray[np.signedinteger]:
         """(n + 1, n + 1): the number of boundary pixels below and left of each corner of a pixel.
 
-        If the trim does not know where its boundary is, all pixels count as boundary pixels.
+        Pixels where the trim does not know its boundary count as boundary pixels.
         """
-        passed, all_known = self.trim.cells_of_border(self.domain, (self.n, self.n))
+        passed, unknown = self.trim.cells_of_border(self.domain, (self.n, self.n))
         dtype = np.int16 if self.n**2 <= np.iinfo(np.int16).max else np.int32
         sums = np.zeros((self.n + 1, self.n + 1), dtype=dtype)
-        np.cumsum(passed, axis=0, out=sums[1:, 1:])
+        np.cumsum(passed | unknown, axis=0, out=sums[1:, 1:])
         np.cumsum(sums[1:, 1:], axis=1, out=sums[1:, 1:])
-        return (
-            sums if all_known else np.multiply.outer(np.arange(self.n + 1), np.arange(self.n + 1))
-        )
+        return sums

@@ -4,30 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.repeats import repeated
-from ...runtime.base.trees import tree_of
-from ...runtime.directions.unit import unit_vector
-from .links import edges_of
-from .mesh import Mesh
-
-if TYPE_CHECKING:
-    from scipy.spatial import KDTree
 
 # The number of pixels along each side for `in_front`, and the number of triangles that it treats at
 # a time.
 PIXELS, AT_ONCE = 400, 4096
 # The number of points that `Front` treats at a time.
 POINTS = 1 << 15
-# Edges are divided into steps that are as long as the size of the mesh divided by this number.
-STEPS = 256
-# A triangle up to this far below a point, relative to the size of the mesh, hides the point: the
-# triangle may belong to a solid in contact.
-BELOW = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,59 +65,6 @@ class Front:
         found = np.full(len(places), -np.inf)
         np.maximum.at(found, place[inside], depths)
         return found
-
-
-@dataclass(frozen=True, eq=False)
-class FreeAlong:
-    """The condition that a ray from infinity against an axis reaches a point of a closed mesh.
-
-    It holds if a ray from the point along the axis does not enter the mesh, that is, meets no
-    triangle from outside. `below` are the triangles that rays along the axis meet from outside, in
-    the coordinates of `rows` (3, 3), whose last row is the axis. Triangles up to `slack` below the
-    point count as met: they may belong to a solid in contact. Shadows end below the boundary edges
-    of `below`; the tree `edges` has points on these edges, `step` apart.
-    """
-
-    rows: Array
-    below: Front
-    slack: float
-    edges: KDTree
-    step: float
-    error = 0.0
-
-    @classmethod
-    def of(cls, mesh: Mesh, axis: Array) -> FreeAlong:
-        """Return the condition for a closed mesh with outward triangles."""
-        across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-        across = unit_vector(across, "the axis")
-        rows = np.stack([across, np.cross(axis, across), axis])
-        turned = mesh.vertices @ rows.T
-        a, b, c = np.moveaxis(turned[mesh.triangles, :2], 1, 0)
-        chosen = mesh.triangles[cross_of(b - a, c - a) < 0.0]
-        size = float(np.ptp(turned, axis=0).max())
-        sides, times = edges_of(chosen, len(turned))
-        ends, step = turned[sides[times == 1], :2], size / STEPS
-        parts = np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / step).astype(np.int64) + 1
-        owner, k = repeated(parts)
-        share = (k / np.maximum(parts[owner] - 1, 1))[:, None]
-        points = ends[owner, 0] + share * (ends[owner, 1] - ends[owner, 0])
-        return cls(rows, Front.of(turned[chosen]), BELOW * size, tree_of(points), step)
-
-    def holds(self, points: Array, normals: Array) -> Flags:
-        """Return whether points (k, 3) with normals (k, 3) are reached.
-
-        Points whose normals face away from the axis are not reached.
-        """
-        found = normals @ self.rows[2] >= -BELOW
-        seen = points[found] @ self.rows.T
-        found[found] = self.below.at(seen[:, :2]) < seen[:, 2] - self.slack
-        return found
-
-    def may_change(self, points: Array, radii: Array) -> Flags:
-        """Return whether balls around points (k, 3) may be partly in, partly outside a shadow."""
-        seen, most = points @ self.rows[:2].T, float(radii.max(initial=0.0)) + self.step
-        near = self.edges.query(seen, distance_upper_bound=most)[0]
-        return near <= radii + self.step
 
 
 def in_front(triangles: Array) -> Flags:

@@ -22,6 +22,14 @@ def edges_of(triangles: Indices, count: int) -> tuple[Indices, Indices]:
     return np.stack(np.divmod(numbers, count), axis=1), times
 
 
+def is_closed(triangles: Indices, count: int) -> bool:
+    """Return whether each edge is in two triangles, which traverse it in opposite directions."""
+    one, other = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    ways, back = np.sort(one * count + other), np.sort(other * count + one)
+    twice = (ways[1:] == ways[:-1]).any()
+    return bool(len(ways) and not twice and (ways == back).all())
+
+
 def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices, bool]:
     """Return the indices (k, 3) of the triangles across the edges opposite to corners, −1 for none.
 

@@ -15,7 +15,7 @@ from ...runtime.base.scales import scale_to_one
 from ...runtime.domain.domain import Boundary, Domain, checked_domain, checked_sides
 from ...runtime.spline.spline import short_label
 from .kernels.flips import smallest_cosines, smallest_tangents
-from .links import edges_of
+from .links import edges_of, is_closed
 from .mesh_methods import Methods
 from .texture import corner_places
 
@@ -173,12 +173,7 @@ class Mesh(Methods):
         (True, True)
 
         """
-        count = max(len(self.vertices), 1)
-        one, other = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
-        ways = np.sort(one * count + other)
-        back = np.sort(other * count + one)
-        twice = (ways[1:] == ways[:-1]).any()
-        return bool(len(ways) and not twice and (ways == back).all())
+        return is_closed(self.triangles, max(len(self.vertices), 1))
 
     @property
     def volume(self) -> float:

@@ -9,8 +9,7 @@ from gaussmap.tools.cad.examples import box
 from ...refusals import refused
 from .made import noted
 
-for extra in ("trimesh", "rtree", "pythoncdt"):
-    pytest.importorskip(extra)
+pytest.importorskip("pythoncdt")
 ALONG = gm.Reach((1, 0, 0.2), 70, unobstructed=True)
 AXIS = np.array([1, 0, 0.2]) / np.hypot(1, 0.2)
 
@@ -33,7 +32,8 @@ def test_of_saved_faces_the_whole_part_is_not_known(tmp_path):
     refused(r"give the whole part, .* by=part\)", gm.sample(some, 20).unobstructed, 1.0)
     refused("needs a closed part", gm.sample, some, 20, reach=ALONG)
     refused("needs a closed part or surface", gm.sample, "wavy_graph", 20, reach=ALONG)
-    refused("not known of splines", gm.sample, gm.fit("torus", (8, 8)), 20, reach=ALONG)
+    for reach in (ALONG, gm.Reach(clearance=1.0)):
+        refused("not known of splines", gm.sample, gm.fit("torus", (8, 8)), 20, reach=reach)
 
 
 def test_faces_that_rays_from_above_meet_are_those_of_the_whole_part():
@@ -43,6 +43,35 @@ def test_faces_that_rays_from_above_meet_are_those_of_the_whole_part():
     assert gm.Reach._of(above._numbers)._numbers == above._numbers == samples.report.reach
     bottom = box().select(index=[4])
     refused("no point in reach: unobstructed", gm.sample, bottom, 20, reach=above, error=error)
+
+
+def least_distance(points, normals):
+    """The least distance from the central circle of a torus, on segments of length 1.4."""
+    steps = np.linspace(0.05, 1.4, 100)[:, None]
+    x, y, z = np.moveaxis(points[:, None] + steps * normals[:, None], 2, 0)
+    return np.hypot(np.hypot(x, y) - 1.0, z).min(axis=1)
+
+
+@pytest.mark.parametrize("whole", [gm.Part(["torus"]), gm.surfaces.torus()])
+def test_points_with_clearance(monkeypatch, whole):
+    """In the hole of a torus, of radius 0.65, normals meet the other side."""
+    monkeypatch.setattr(obstacle, "VERTICES", 3_000)
+    reach = gm.Reach((1, 0, 0), 30.0, clearance=1.4)
+    assert gm.Reach._of(reach._numbers)._numbers == reach._numbers
+    samples = gm.sample(whole, 60, reach=reach)
+    assert len(samples) == 60
+    assert samples.report.reach == reach._numbers
+    assert "normals within 30° of (1, 0, 0), free along the normal for 1.4" in samples.summary()
+    assert least_distance(samples.points, samples.normals).min() > 0.34
+    assert samples.unobstructed(1.4).all()
+    u, v = np.random.default_rng(0).random((2, 100_000)) * 2.0 * np.pi
+    normals = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=1)
+    share, area = normals[:, 0] > np.cos(np.radians(30.0)), 1.0 + 0.35 * np.cos(v)
+    points = np.stack([area * np.cos(u), area * np.sin(u), 0.35 * np.sin(v)], axis=1)
+    share[share] = least_distance(points[share], normals[share]) > 0.35
+    expected = 0.35 * (2.0 * np.pi) ** 2 * (area * share).mean()
+    np.testing.assert_allclose(samples.weights().sum(), expected, rtol=0.05)
+    assert gm.Reach._of(gm.Reach(clearance=np.inf)._numbers)._clearance == np.inf
 
 
 @pytest.mark.slow

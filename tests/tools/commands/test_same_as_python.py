@@ -1,6 +1,7 @@
 """Commands and Python have the same options, defaults and results; texts name the same surfaces."""
 
 import inspect
+import math
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -107,8 +108,9 @@ OTHERS: list[tuple[str, str, Made]] = [
     ("box.npz", "--edges", lambda: gm.sample(gm.read_part("box.npz"), 60, edges=True)),
     ("box.npz", "--faces 0 3 --from-edges .2", lambda: gm.sample(
         gm.read_part("box.npz").select(index=[0, 3]), 60, reach=gm.Reach(from_edges=0.2))),
-    ("box.npz", "--faces 5 --unobstructed", lambda: gm.sample(
-        gm.read_part("box.npz").select(index=[5]), 60, reach=gm.Reach(unobstructed=True))),
+    ("box.npz", "--faces 5 --unobstructed --clearance inf", lambda: gm.sample(
+        gm.read_part("box.npz").select(index=[5]), 60,
+        reach=gm.Reach(unobstructed=True, clearance=math.inf))),
     ("box.npz --kind plane", "--name s*e",
      lambda: gm.sample(gm.read_part("box.npz").select(kind="plane", name="s*e"), 60)),
     ("part.step", "", part()),
