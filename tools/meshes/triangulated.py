@@ -133,7 +133,7 @@ def too_few(count: int, name: str) -> InputError:
     return InputError(
         f"the vertices on {name!r}, {count:,} in all, are too few, or leave too large gaps, for "
         "a mesh of the whole; take more samples or normals in all directions, or leave out the "
-        "triangles across gaps, whose normals deviate by more than an angle."
+        "triangles across gaps, whose normals deviate by more than an angle, as with angle=60."
     )
 
 
