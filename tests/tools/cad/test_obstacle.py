@@ -75,6 +75,19 @@ def test_points_with_clearance(monkeypatch, whole):
 
 
 @pytest.mark.slow
+def test_normals_that_point_into_a_closed_surface(monkeypatch):
+    """The tube of a torus, from its inner side, is 0.7 wide."""
+    monkeypatch.setattr(obstacle, "VERTICES", 3_000)
+    torus = gm.surfaces.torus()
+    inside = gm.Surface.from_callable(
+        lambda v, u: torus.function(u, v), torus.domain, periodic=(True, True)
+    )
+    assert gm.sample(inside, 30, reach=gm.Reach(clearance=0.6)).unobstructed(0.6).all()
+    wide, error = gm.Reach(clearance=0.71), gm.errors.SurfaceError
+    refused("or the reach, leaves nothing", gm.sample, inside, 30, reach=wide, error=error)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("whole", [gm.Part(["torus"]), gm.surfaces.torus()])
 def test_points_that_a_ray_reaches(monkeypatch, whole):
     """Through the hole of a torus, rays meet the near side before the far one."""
