@@ -270,8 +270,7 @@ class GaussMap(Methods):
             sums[which] += face.component_degrees(directions[which])
         for piece in self._pieces:
             sums += tip_degrees(piece, directions)
-            if isinstance(piece, ProvedSurface):
-                sums[which] += piece.component_degrees(directions[which])
+            sums[which] += piece.component_degrees(directions[which])
         if self._creases is not None:
             at = self._creases.besides(found, directions)
             sums += np.bincount(at.numbers, np.nan_to_num(at.degrees), asked).astype(np.int64)

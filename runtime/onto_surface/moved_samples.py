@@ -7,9 +7,9 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.aliases import Array, Flags, Indices
 from ..base.memory import check_memory
-from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, regular
+from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of
 from ..samples.report import UndecidedNormal
-from ..search.hits import fill
+from ..search.hits import fill, kinds_of
 from ..search.search import Hits
 from ..spline.spline import Spline
 from ..surface.surface import Surface
@@ -40,7 +40,8 @@ def moved_samples(
         arrays["gaussian_curvature"], arrays["mean_curvature"], states,
     )  # fmt: skip
     refine(surface, spline, target, threads)
-    return arrays | {FLAG_NAMES[0]: states == FOUND}
+    arrays["gaussian_curvature"][hits.special] *= 0.0
+    return arrays | kinds_of(hits, ("component",)) | {FLAG_NAMES[0]: states == FOUND}
 
 
 def unmoved(spline: Spline, numbers: Indices, uv: Array) -> tuple[UndecidedNormal, ...]:
@@ -74,6 +75,5 @@ def as_fields(arrays: Fields, fields: Sequence[str], dtype: DTypeLike) -> Fields
     if "support" in fields:
         support = np.einsum("ij,ij->i", arrays["points"], arrays["normals"])
         arrays = arrays | {"support": support}
-    arrays = arrays | regular(len(arrays["uv"]), fields)
     kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
     return FieldsOfSamples(kept, unrefined)

@@ -17,16 +17,16 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...generated.spline import SCALE
-from ..base.aliases import Array
+from ..base.aliases import Array, Indices
 from ..base.memory import check_memory
 from ..base.scales import check_range
 from ..base.threads import over_ranges
 from ..directions.regions import Reach
 from ..domain.trim import samples_inside, with_uv
-from ..samples.fields import FLOAT_NAMES, bytes_of, new_field, regular
+from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
 from ..samples.report import SamplingReport, UndecidedNormal, sampling_report
 from ..samples.samples import Samples
-from ..search.hits import fill
+from ..search.hits import SIGN, fill, kinds_of
 from ..search.kernels.hits import fill_known
 from ..search.search import Hits, find, find_in_turn
 from ..spline.developable import CellMeasure
@@ -148,7 +148,7 @@ class OnPatches:
 
         `density` is the number of normals per steradian in the report, by default S / 4π.
         """
-        hits = find(self.spline, normals, self.threads, progress)
+        hits = find(self.spline, normals, self.threads, progress, components=True)
         return self.samples_at_hits(normals, hits, fields, dtype, density)
 
     def samples_at_hits(
@@ -178,7 +178,7 @@ class OnPatches:
     ) -> Iterator[Samples]:
         """Yield the samples of `samples_at` in parts of at most `size` samples."""
         report = self.report(len(normals), density, None, {})
-        parts = find_in_turn(self.spline, normals, self.threads, progress)
+        parts = find_in_turn(self.spline, normals, self.threads, progress, components=True)
         for found in self.at_hits_in_turn(normals, parts, fields, dtype, size):
             known = replace(
                 report, samples=found.number, unrefined=found.unrefined, undecided=found.undecided
@@ -209,8 +209,18 @@ class OnPatches:
         wanted = with_uv(self.spline.trim, fields)
         check_memory("stored", len(hits), bytes_of(set(wanted) - set(self.memory), dtype))
         arrays = fill(self.spline, normals, hits, self.threads, wanted, dtype, self.memory)
-        arrays |= regular(len(hits), fields, self.memory)
+        arrays |= kinds_of(hits, fields, self.memory)
         return FieldsOfSamples(samples_inside(self.spline.trim, arrays, fields))
+
+    def component_degrees(self, normals: Array) -> Indices:
+        """Return, for each normal, the sum of the indices of its curves and isolated points."""
+        hits = find(self.spline, normals, self.threads, components=True)
+        some = hits.rows(hits.special)
+        degrees, trim = some.local[:, SIGN], self.spline.trim
+        if trim is not None:
+            uv = fill(self.spline, normals, some, self.threads, ("uv",))["uv"]
+            degrees = np.where(trim.contains(uv), degrees, 0.0)
+        return np.bincount(some.normal_index, degrees, len(normals)).astype(np.int64)
 
     def at_hits_in_turn(
         self,

@@ -195,8 +195,8 @@ class SampleArrays:
     def elliptic(self) -> NDArray[np.bool_]:
         """(N,) bool array: where the Gaussian curvature is positive (its sign bit is clear).
 
-        Every sample, even a parabolic one, is either elliptic or hyperbolic, so that Σ sign K = χ/2
-        holds for these two sets.
+        Every sample, even a parabolic one, is either elliptic or hyperbolic. Σ sign K = χ/2 holds
+        for these two sets if all samples are regular points; `GaussMap.degree` needs no condition.
         """
         return ~self.hyperbolic
 

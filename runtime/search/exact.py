@@ -41,9 +41,10 @@ SAME_PLACE = 1e-6
 class Decision:
     """The pairs of a patch and a normal that are hits.
 
-    `which` (k,) are the indices of the hits among all pairs. The columns of `local` (k, 5) are the
-    parameters u, v of the point in its patch, the sign of K, and the parameters at which curvatures
-    are evaluated; these are u, v again, or those of a nearby point if the point is singular.
+    `which` (k,) are the indices of the hits among all pairs. The columns of `local` (k, 6) are the
+    parameters u, v of the point in its patch, the sign of K, the parameters at which curvatures are
+    evaluated (u, v again, or those of a nearby point if the point is singular), and the code of
+    REGULAR.
     """
 
     which: NDArray[np.int64]
@@ -81,7 +82,7 @@ def decide(
     periods = np.where([x[0] == "periodic" for x in spline.boundary], spline.cells, np.inf)
     keep = first_of_each_place(number, place, near[which], periods)
     keep[keep] = uncancelled(number[keep], _poles_at(spline, place[keep]), sign[keep])
-    at = np.column_stack([local[which], sign.astype(np.float64), regular])
+    at = np.column_stack([local[which], sign.astype(np.float64), regular, 0.0 * sign])
     return Decision(which[keep], at[keep])
 
 

@@ -13,7 +13,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.aliases import Array, Indices
 from ..base.threads import over_ranges
-from ..samples.fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
+from ..samples.fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, Component, new_field, regular
 from ..spline.nets import AnySpline, NetSpline
 from ..spline.spline import Spline
 from .in_nets import fields_in_nets
@@ -21,6 +21,8 @@ from .kernels.hits import fill_known, fill_samples, new_tile
 from .kernels.lists import NUMBER
 
 SAMPLES_AT_A_TIME = 1 << 16
+# Columns of `Hits.local`: the sign of K, or the index of a component, and its kind.
+SIGN, KIND = 2, 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +30,7 @@ class Hits:
     """Pairs of a normal and a patch that has it, sorted by normal and then by patch.
 
     `keys` (N,) are (index of the normal) << 32 | index of the patch. `exact` (k,) are the positions
-    in `keys` of the hits that were decided by exact arithmetic, and `local` (k, 5) are the columns
+    in `keys` of the hits that were decided by exact arithmetic, and `local` (k, 6) are the columns
     of `Decision` for these hits. `developable` is the number of all patches of the spline that are
     developable up to the rounding of their coordinates.
     """
@@ -41,7 +43,7 @@ class Hits:
     @classmethod
     def none(cls, developable: int) -> Hits:
         """Return an empty set of hits."""
-        return cls(np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, 5)), developable)
+        return cls(np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, 6)), developable)
 
     @classmethod
     def joined(cls, parts: Sequence[Hits]) -> Hits:
@@ -70,6 +72,11 @@ class Hits:
         """The index of the normal of each hit."""
         return self.keys >> 32
 
+    @property
+    def special(self) -> Indices:
+        """The indices of hits that stand for other components than regular points."""
+        return self.exact[self.local[:, KIND] != Component.REGULAR]
+
     def __getitem__(self, key: slice) -> Hits:
         """Return the hits with the indices of a slice with step 1."""
         first, last, _ = key.indices(len(self))
@@ -84,17 +91,15 @@ class Hits:
         kept = kept[rows[place[kept]] == self.exact[kept]]
         return Hits(self.keys[rows], place[kept], self.local[kept], self.developable)
 
-    def merged(self, keys: Indices, local: Array) -> Hits:
-        """Return these hits together with exactly decided hits, which have other normals.
-
-        `keys` (k,) and `local` (k, 5) describe the hits to add.
-        """
-        order = np.argsort(np.concatenate([self.keys, keys]))
-        place = np.argsort(order)
-        exact = np.concatenate([place[self.exact], place[len(self) :]])
+    def merged(self, others: Hits) -> Hits:
+        """Return these hits together with others, which are other pairs."""
+        order = np.argsort(np.concatenate([self.keys, others.keys]), kind="stable")
+        place = np.empty_like(order)
+        place[order] = np.arange(len(order))
+        exact = place[np.concatenate([self.exact, len(self) + others.exact])]
         in_turn = np.argsort(exact)
-        local = np.concatenate([self.local, local])[in_turn]
-        keys = np.concatenate([self.keys, keys])[order]
+        local = np.concatenate([self.local, others.local])[in_turn]
+        keys = np.concatenate([self.keys, others.keys])[order]
         return Hits(keys, exact[in_turn], local, self.developable)
 
     def whole_normals(self, size: int) -> Iterator[Hits]:
@@ -132,7 +137,8 @@ def fill(
         known = {"normal_index": hits.normal_index, "patch_index": hits.patch_index}
         patches, asked = hits.patch_index, normals[hits.normal_index]
         found = fields_in_nets(spline, patches, asked, hits.exact, hits.local, fields, dtype)
-        return found | {name: x for name, x in known.items() if name in fields}
+        found |= {name: x for name, x in known.items() if name in fields}
+        return _without_curvature(found, hits)
     types = dict.fromkeys(FLOAT_NAMES, dtype) | dict.fromkeys(INDEX_NAMES, np.int64)
     filled = {x: new_field(x, len(hits), types[x], memory) for x in ARRAY_NAMES if x in fields}
     arrays = [filled[x] if x in filled else new_field(x, 0, types[x]) for x in types]
@@ -146,7 +152,26 @@ def fill(
             spline.coefficients, spline.scale, normals, spline.frame,
             hits.exact, hits.keys[hits.exact], hits.local, *arrays[: len(FLOAT_NAMES)],
         )  # fmt: skip
-    return filled
+    return _without_curvature(filled, hits)
+
+
+def kinds_of(
+    hits: Hits,
+    fields: Sequence[str],
+    memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
+) -> dict[str, NDArray[Any]]:
+    """Return {"component": the kinds of components of hits}, or {} if it is not in `fields`."""
+    found = regular(len(hits), fields, memory)
+    for kinds in found.values():
+        kinds[hits.exact] = hits.local[:, KIND]
+    return found
+
+
+def _without_curvature(fields: dict[str, NDArray[Any]], hits: Hits) -> dict[str, NDArray[Any]]:
+    """Return the fields with K = 0, with its sign, for components that are no regular points."""
+    if "gaussian_curvature" in fields:
+        fields["gaussian_curvature"][hits.special] *= 0.0
+    return fields
 
 
 def fill_hits(

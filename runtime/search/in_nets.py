@@ -66,7 +66,7 @@ def flat_nets(spline: NetSpline) -> Flags:
     """Return a mask (T,) of the patches that are developable up to rounding of coordinates."""
 
     def flat() -> Flags:
-        cubic = python_function(formulas.parabolic_cubic)(spline.patch())
+        cubic = python_function(formulas.parabolic_cubic)(spline._patch())
         noise = _rounding(spline) * _largest(spline) ** 5
         return np.abs(np.stack(cubic)).max(axis=0) <= 64.0 * noise
 
@@ -91,7 +91,7 @@ def decide_in_nets(
     `numbers[k]` is the index of the normal. At an edge on the boundary of the spline, a pair is a
     hit if the form of the edge is 0 up to its error; of such hits at one corner, one is kept.
     """
-    _, *forms = python_function(formulas.forms)(spline.patch(patches), vector(normals))
+    _, *forms = python_function(formulas.forms)(spline._patch(patches), vector(normals))
     values, errors = np.stack(forms, axis=1), errors_of(spline)[patches, None]
     signs = np.where(np.abs(values) > errors, np.sign(values), 0.0).astype(np.int8)
     topology = spline.topology
@@ -105,9 +105,9 @@ def decide_in_nets(
     place = np.where(bars.max(axis=1) > 1.0 - SAME_PLACE, corner, -1 - np.arange(len(which)))
     keep = first_of_each_place(numbers[which], place[:, None].astype(np.float64), near)
     which, local = which[keep], local[keep]
-    _, singular = spline.normals_in_patches(patches[which], local[:, :2])
+    _, singular = spline._normals_in_patches(patches[which], local[:, :2])
     towards = np.where(singular[:, None], SINGULAR_POINT, 0.0) * (1.0 / 3.0 - local[:, :2])
-    return Decision(which, np.concatenate([local, local[:, :2] + towards], axis=1))
+    return Decision(which, np.column_stack([local, local[:, :2] + towards, 0.0 * local[:, 0]]))
 
 
 def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -> Flags:
@@ -117,7 +117,7 @@ def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -
     tangents are perpendicular to a circle of directions, and at tips, the cosine of the angle must
     be more than SAME_NORMAL.
     """
-    N, singular = spline.normals_in_patches(patches, places)
+    N, singular = spline._normals_in_patches(patches, places)
     tips = tips_of(spline)
     if tips is not None:
         singular |= tips.touching[patches]
@@ -311,15 +311,15 @@ def fields_in_nets(
     `exact` are the indices of the samples that were decided exactly; `local` has their rows of
     `Decision.local`. Floating-point fields have the type `dtype`.
     """
-    patch, n = spline.patch(patches), normals
+    patch, n = spline._patch(patches), normals
     D, U, V, _ = python_function(formulas.forms)(patch, vector(n))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         u, v = (np.array(x) for x in python_function(formulas.parameters)(D, U, V))
         u[exact], v[exact] = local[:, 0], local[:, 1]
         uv = np.stack([u, v], axis=1)
-        points = spline.points_in_patches(patches, uv)
+        points = spline._points_in_patches(patches, uv)
         u[exact], v[exact] = local[:, 3], local[:, 4]
-        N, _ = spline.normals_in_patches(patches[exact], local[:, 3:])
+        N, _ = spline._normals_in_patches(patches[exact], local[:, 3:5])
         at = n.copy()
         at[exact] = N / np.linalg.norm(N, axis=1, keepdims=True)
         K, H = python_function(formulas.curvature_at)(patch, vector(at), u, v)

@@ -1,34 +1,112 @@
-"""Normals that all points of a line of nets have, such as the circle on top of a torus.
+"""Points of a spline with one normal that are connected: a curve, a region or a singular point.
 
-In a patch on such a line all forms of the normal are 0, and rounding gives each corner on the line
-its own normal. So the search displaces the normal by more than rounding, and the points found are
-moved back to the line.
+In a patch, n·p_u and n·p_v are linear in u and v. If the matrix of their derivatives has rank 1,
+both may be 0 on a line: all its points have the normal n. Exact arithmetic makes some points of
+such a line hits, or none. Here each connected set of lines becomes one hit, and so do hits that are
+one point, such as a flat point where several patches meet.
 """
+
+from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from ...generated import patch as formulas
+from ...generated.spline import CORNERS as OUTER
 from ..base.aliases import Array, Flags, Indices
 from ..base.formula_calls import python_function, vector
-from ..spline.nets import NetSpline
-from .in_nets import rounding_of
+from ..base.tolerances import FORM_ERROR
+from ..samples.fields import Component
+from ..spline.joints import linked
+from ..spline.nets import AnySpline, NetSpline
+from .hits import SIGN, Hits
+from .kernels.lists import NUMBER
 
 # Normals are displaced by BESIDE times the rounding error of coordinates: the angle by which
 # rounding turns normals is about that error. DIRECTION is in no plane of symmetry.
 BESIDE, DIRECTION = 64.0, np.array([1.0, 1e-2, 1e-4])
+# Points of a patch this near to a corner or an edge, in u and v, are on it.
+TOUCHING = 1e-6
+# The parameters u, v, w of the corners of a patch.
+CORNERS = np.eye(3)
+# For each edge, the corners at its start and its end. The control points at corners, and of edges.
+NEXT, LAST = [1, 2, 0], [2, 0, 1]
+NODES = [0, 1, 2, 5, 4, 3]
 
 
-def have_lines(spline: NetSpline, patches: Indices, normals: Array) -> Flags:
-    """Return a mask (k,) of the patches with a line all of whose points have the given normal.
+class Lines(NamedTuple):
+    """Lines, points and whole patches with one normal, for some pairs of a normal and a patch.
 
-    `normals` (k, 3) has a normal for each of the k `patches`; forms count as 0 up to rounding. The
-    mask is False for patches with a collapsed edge, or with a singular corner at a pole.
+    `touched` (k, 6) says which corners and edges of its patch a line touches. `at` (k, 2) are u and
+    v at the middle of the line, and `ends` (k,) is the number of ends: 1 for a point, 0 if the line
+    misses its patch.
     """
-    topology = spline.topology
-    forms = python_function(formulas.forms)(spline.patch(patches), vector(normals))
-    small = (np.abs(forms) <= rounding_of(spline, patches)).all(axis=0)
-    small &= ~topology.is_point.reshape(-1, 3)[patches].any(axis=1)
-    return small & (topology.pole_corner[patches] < 0)
+
+    keys: Indices
+    touched: Flags
+    at: Array
+    ends: Indices
+
+
+def lines_of(spline: AnySpline, keys: Indices, normals: Array) -> Lines:
+    """Return the lines of the given pairs; `normals` are those of the search.
+
+    The normals of a line equal that of the pair up to the rounding of coordinates. Patches with a
+    singular corner, at poles and tips, have none here.
+    """
+    patch, n = spline._patch(keys & NUMBER), normals[keys >> 32]
+    A, B, C, P, Q = forms = python_function(formulas.linear_forms)(patch, vector(n))
+    largest = np.abs(np.stack([np.stack(x) for x in patch[:5]])).sum(axis=1).max(axis=0)
+    error = FORM_ERROR * largest + spline.noise
+    # The determinant is the product of both eigenvalues, of which one must be at most `error`.
+    near = np.abs(A * C - B * B) <= error * (np.abs(A) + 2.0 * np.abs(B) + np.abs(C))
+    (A, B, C, P, Q), error, keys, n = np.stack(forms)[:, near], error[near], keys[near], n[near]
+    values, axes = np.linalg.eigh(np.moveaxis(np.array([[A, B], [B, C]]), 2, 0))
+    slopes = np.einsum("kij,ik->kj", axes, np.stack([P, Q]))
+    order = np.argsort(np.abs(values), axis=1)
+    (flat, steep), (along, across) = (
+        np.take_along_axis(x, order, axis=1).T for x in (values, slopes)
+    )
+    axis = np.take_along_axis(axes, order[:, None], axis=2)[..., 1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # The distances of the corners from the line, and half the width of the line.
+        away = np.stack([axis[:, 0], axis[:, 1], 0.0 * steep], axis=1) + (across / steep)[:, None]
+        corners = ~(np.abs(away) > (TOUCHING + error / np.abs(steep))[:, None])
+    crossing = ~(corners[:, NEXT] | corners[:, LAST]) & (away[:, NEXT] * away[:, LAST] < 0.0)
+    start, end = (np.where(crossing, np.abs(away[:, x]), 0.0) for x in (NEXT, LAST))
+    share = np.divide(start, start + end, out=start, where=crossing)
+    bars = corners + share[:, NEXT] + (crossing - share)[:, LAST]
+    ends = corners.sum(axis=1) + crossing.sum(axis=1)
+    bars[ends == 0] = 1.0
+    at = (bars / bars.sum(axis=1, keepdims=True))[:, :2]
+    N, singular = spline._normals_in_patches(keys & NUMBER, at)
+    found = (np.abs(flat) <= error) & (np.abs(along) <= error)
+    found &= np.einsum("kx,kx->k", N, n) > 0.0
+    for corner in CORNERS[:, :2]:
+        singular |= spline._normals_in_patches(keys & NUMBER, at * 0.0 + corner)[1]
+    found &= ~singular
+    touched = np.concatenate([corners, crossing | corners[:, NEXT] | corners[:, LAST]], axis=1)
+    return Lines(keys[found], touched[found], at[found], ends[found])
+
+
+def points_of(hits: Hits, which: Indices) -> Lines:
+    """Return exactly decided hits, of indices `which` in `hits.exact`, as single points."""
+    at = hits.local[which, :2]
+    bars = np.column_stack([at, 1.0 - at.sum(axis=1)])
+    touched = np.concatenate([bars >= 1.0 - TOUCHING, bars <= TOUCHING], axis=1)
+    return Lines(hits.keys[hits.exact[which]], touched, at, np.ones(len(at), np.int64))
+
+
+def meeting(spline: AnySpline, hits: Hits) -> Indices:
+    """Return the indices of normals with several exactly decided hits at one point."""
+    numbers = hits.normal_index[hits.exact]
+    again = numbers[1:] == numbers[:-1]
+    points = points_of(hits, np.flatnonzero(np.append(again, False) | np.append(False, again)))
+    row, place = np.nonzero(points.touched)
+    nodes, _ = nodes_of(spline, points.keys & NUMBER)
+    keys = np.sort(points.keys[row] >> 32 << 32 | nodes[row, place])
+    return keys[1:][keys[1:] == keys[:-1]] >> 32
 
 
 def beside_lines(spline: NetSpline, normals: Array) -> Array:
@@ -38,22 +116,86 @@ def beside_lines(spline: NetSpline, normals: Array) -> Array:
     return moved / np.linalg.norm(moved, axis=1, keepdims=True)
 
 
-def places_at(spline: NetSpline, patches: Indices, normals: Array, beside: Array) -> Array:
-    """Return the parameters (k, 2) of points with the normals (k, 3).
+def with_components(
+    spline: AnySpline, hits: Hits, lines: Lines, numbers: Indices, counted: Hits
+) -> Hits:
+    """Return the hits with one hit for each connected set of lines, and of hits at one point.
 
-    If a line of the patch has the normal, the result is the point of the line that is nearest to
-    the point with the displaced normal in `beside`.
+    Only normals with the given indices have such sets. The index of a set is the sum of the signs
+    of K of the hits in it; if it has lines, these are hits in `counted`, of displaced normals. The
+    index of lines that end in the border is unknown, and 0 here.
     """
-    uv, lines = np.full((len(patches), 2), 1.0 / 3.0), have_lines(spline, patches, normals)
-    for n, on_lines in ((beside, np.zeros_like(lines)), (normals, lines)):
-        A, B, C, P, Q = python_function(formulas.linear_forms)(spline.patch(patches), vector(n))
-        hessian = np.array([[A, B], [B, C]])
-        values, axes = np.linalg.eigh(hessian.transpose(2, 0, 1))
-        slopes = np.einsum("ijk,kj->ik", hessian, uv) + np.stack([P, Q])
-        steps, sizes = np.einsum("kij,ik->kj", axes, slopes), np.abs(values)
-        along = on_lines[:, None] & (sizes < sizes.max(axis=1, keepdims=True))
-        steps = np.divide(steps, values, out=np.zeros_like(steps), where=~along & (sizes > 0.0))
-        u, v = (uv - np.einsum("kij,kj->ki", axes, steps)).T
-        bars = np.maximum([u, v, 1.0 - u - v], 0.0)
-        uv = (bars / bars.sum(axis=0))[:2].T
-    return uv
+    own, which = (
+        np.flatnonzero(np.isin(x.normal_index[x.exact], numbers)) for x in (hits, counted)
+    )
+    parts = lines, points_of(hits, own), points_of(counted, which)
+    first, last = len(lines.keys), len(lines.keys) + len(own)
+    every = Lines(
+        np.concatenate([x.keys for x in parts]), np.concatenate([x.touched for x in parts]),
+        np.concatenate([x.at for x in parts]), np.concatenate([x.ends for x in parts]),
+    )  # fmt: skip
+    nodes, border = nodes_of(spline, every.keys & NUMBER)
+    group = _connected(every, nodes)
+    count = int(group.max(initial=-1)) + 1
+    most = np.full(count, -1)  # the largest number of ends of a line in each set
+    np.maximum.at(most, group[:first], lines.ends)
+    degree, beside = (
+        np.bincount(group[rows], x.local[k, SIGN], count)
+        for rows, x, k in ((slice(first, last), hits, own), (slice(last, None), counted, which))
+    )
+    outer = np.zeros(count, np.bool_)
+    outer[group[(every.touched & border).any(axis=1)]] = True
+    degree = np.where(most < 0, degree, beside * ~outer)
+    special = (most >= 0) | (np.bincount(group[first:last], minlength=count) > 1)
+    # The first line of a set, if possible one with two ends, or else its first hit, stands for it.
+    rows = np.lexsort(
+        (every.keys[:last], -every.ends[:last], np.arange(last) >= first, group[:last])
+    )
+    rows = rows[np.diff(group[rows], prepend=-1) != 0]
+    rows = rows[(special & (most != 0))[group[rows]]]
+    kinds = np.where(most > 1, Component.CURVE, Component.ISOLATED)
+    where, at = group[rows], every.at[rows]
+    local = np.column_stack([at, degree[where], at, kinds[where]])
+    gone = hits.exact[own[special[group[first:last]]]]
+    found = Hits(every.keys[rows], np.arange(len(rows)), local, hits.developable)
+    return hits.rows(np.delete(np.arange(len(hits)), gone)).merged(found)
+
+
+def nodes_of(spline: AnySpline, patches: Indices) -> tuple[Indices, Flags]:
+    """Return a number for each corner and edge (k, 6) of patches, and whether it is on the border.
+
+    What patches share has one number. Creases belong to the border.
+    """
+    if isinstance(spline, NetSpline):
+        numbers, edges = spline.triangles[:, NODES], spline.topology.on_border.reshape(-1, 3)
+        ends = np.concatenate([numbers[:, x][edges] for x in (NEXT, LAST)])
+        border = np.concatenate([np.isin(numbers[patches, :3], ends), edges[patches]], axis=1)
+        return numbers[patches], border
+    cell, turn = np.divmod(patches, 4)
+    corners = np.concatenate([OUTER, np.zeros((4, 1, 2))], axis=1)
+    middles = 0.5 * (corners[:, NEXT] + corners[:, LAST])
+    centres = np.stack(np.divmod(cell, spline.cells[1]), axis=1)[:, None] + 0.5
+    at = (4.0 * (centres + np.concatenate([corners, middles], axis=1)[turn])).astype(np.int64)
+    border = np.zeros(at.shape[:2], np.bool_)
+    for axis, (ends, count) in enumerate(zip(spline.boundary, spline.cells, strict=True)):
+        for end, kind in zip((0, 4 * count), ends, strict=True):
+            here = at[..., axis] == end
+            border |= here & (kind == "open")
+            at[here & (kind == "pole"), 1 - axis] = 0
+        if ends[0] == "periodic":
+            at[..., axis] %= 4 * count
+    return at @ [4 * spline.cells[1] + 1, 1], border
+
+
+def _connected(lines: Lines, nodes: Indices) -> Indices:
+    """Return the number of the connected set of each line; `nodes` are those of their patches.
+
+    Lines of one normal are connected if they are in one patch, or touch the same corner or edge.
+    """
+    row, place = np.nonzero(lines.touched)
+    _, own = np.unique(lines.keys, return_inverse=True)
+    _, shared = np.unique(lines.keys[row] >> 32 << 32 | nodes[row, place], return_inverse=True)
+    count = len(lines.keys)
+    one = np.concatenate([np.arange(count), row])
+    other = count + np.concatenate([own, own.max(initial=-1) + 1 + shared])
+    return linked(count + len(other), one, other)[1][:count]

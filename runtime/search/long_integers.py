@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.patch import forms
-from ...generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
+from ...generated.spline import TRIANGLE_NEIGHBOURS, triangle
 from ..base.formula_calls import patch, python_function, vector
-from ..spline.spline import Spline
+from ..spline.spline import CENTRE, Spline
 
 Integers = NDArray[np.object_]
 MANTISSA = 53
@@ -46,12 +46,8 @@ def patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers,
 
     The second result is the exponent.
     """
-    cell, turn = np.divmod(patches, 4)
-    i, j = np.divmod(cell, spline.cells[1])
-    steps = NEIGHBOURS[turn]
-    around = spline.coefficients[i[:, None] + 1 + steps[..., 0], j[:, None] + 1 + steps[..., 1]]
-    values, exponent = integers(around)
-    differences = values - values[:, 4:5]
+    values, exponent = integers(spline._coefficients_around(patches))
+    differences = values - values[:, CENTRE, None]
     read = np.moveaxis(differences[:, TRIANGLE_NEIGHBOURS], 1, 0)
     vectors = python_function(triangle)(*map(vector, read))
     return np.array(vectors[:5], dtype=object), exponent + int(np.log2(spline.scale))

@@ -7,6 +7,7 @@ Sect. 3.2). Exact arithmetic decides the pairs for which rounding leaves a sign 
 
 from collections.abc import Callable, Generator, Iterator
 from contextlib import closing
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,7 @@ from .hits import Hits, fill
 from .in_nets import decide_in_nets, flat_nets
 from .kernels.lists import NUMBER, order_few
 from .kernels.search import PATCHES, Memory, Pairs, search
-from .lines import beside_lines, have_lines, places_at
+from .lines import beside_lines, lines_of, meeting, with_components
 from .patch_index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 
 # The largest number of normals that are searched together, and of hits that are sorted together.
@@ -36,21 +37,34 @@ PATCHES_AT_A_TIME = 1 << 14
 
 
 def find(
-    spline: AnySpline, normals: Array, threads: int | None = None, progress: bool = False
+    spline: AnySpline,
+    normals: Array,
+    threads: int | None = None,
+    progress: bool = False,
+    components: bool = False,
 ) -> Hits:
-    """Return all hits: pairs of one of the unit normals (S, 3) and a patch that has this normal."""
+    """Return all hits: pairs of one of the unit normals (S, 3) and a patch that has this normal.
+
+    Where all points of a line have one normal, some of its points are hits, as if the normal were
+    displaced. With `components`, each connected set of such points has one hit.
+    """
     check_memory("search", len(normals))
-    return Hits.joined(list(find_in_turn(spline, normals, threads, progress)))
+    return Hits.joined(list(find_in_turn(spline, normals, threads, progress, components)))
 
 
 def find_in_turn(
-    spline: AnySpline, normals: Array, threads: int | None = None, progress: bool = False
+    spline: AnySpline,
+    normals: Array,
+    threads: int | None = None,
+    progress: bool = False,
+    components: bool = False,
 ) -> Iterator[Hits]:
     """Yield hits, one `Hits` for each range of consecutive normals, so that memory is bounded.
 
     There is at least one range, also if there are no normals.
     """
-    yield from _in_turn(spline, normals, _with_lines, threads, progress)
+    decided = _with_components if components else _with_points
+    yield from _in_turn(spline, normals, decided, threads, progress)
 
 
 def _in_turn(
@@ -63,8 +77,8 @@ def _in_turn(
     """Yield the hits as `find_in_turn` does; the function `decided` returns the hits of a range."""
     developable = developable_patches(spline, threads)
     tips = tips_of(spline)
-    nothing = developable == spline.patches or (tips is not None and tips.collapsed.all())
-    if nothing or len(normals) == 0:
+    nothing = developable == spline.patches and decided is not _with_components
+    if nothing or len(normals) == 0 or (tips is not None and tips.collapsed.all()):
         yield Hits.none(developable)
         return
     first, size = 0, NORMALS_AT_A_TIME
@@ -130,7 +144,7 @@ def _decided(
     bounds: Array, developable: int, threads: int | None,
 ) -> Hits:  # fmt: skip
     """Return the certain hits and those of the undecided pairs that exact arithmetic confirms."""
-    exact, local = np.empty(0, np.int64), np.empty((0, 5))
+    exact, local = np.empty(0, np.int64), np.empty((0, 6))
     if len(undecided) > 0:
         # Sorting by patches is faster: the vectors of a patch are converted to integers only once.
         patches, numbers = undecided & NUMBER, undecided >> 32
@@ -153,27 +167,44 @@ def _decided(
     return _without_tips(spline, normals, Hits(keys, exact, local, developable))
 
 
-def _with_lines(
+def _with_points(
     spline: AnySpline, normals: Array, certain: list[Indices], undecided: Indices,
     bounds: Array, developable: int, threads: int | None,
 ) -> Hits:  # fmt: skip
-    """Return the hits as `_decided` does, but displace the normals that lines in nets have."""
-    numbers, lines = undecided >> 32, np.empty(0, np.int64)
-    if isinstance(spline, NetSpline) and len(undecided) > 0:
-        lines = np.unique(numbers[have_lines(spline, undecided & NUMBER, normals[numbers])])
-    if len(lines) == 0:
-        return _decided(spline, normals, certain, undecided, bounds, developable, threads)
-    assert isinstance(spline, NetSpline)
-    keep = ~np.isin(numbers, lines)
-    certain = [x[~np.isin(x >> 32, lines)] for x in certain]
-    found = _decided(spline, normals, certain, undecided[keep], bounds[keep], developable, threads)
-    beside = beside_lines(spline, normals[lines])
-    moved = Hits.joined(list(_in_turn(spline, beside, _decided, threads)))
-    (K,) = fill(spline, beside, moved, threads, ("gaussian_curvature",)).values()
-    numbers = lines[moved.normal_index]
-    uv = places_at(spline, moved.patch_index, normals[numbers], beside[moved.normal_index])
-    local = np.column_stack([uv, np.copysign(1.0, K), uv])
-    return found.merged(numbers << 32 | moved.patch_index, local)
+    """Return the hits as `_decided`, but of displaced normals where lines in nets have a normal."""
+    hits = _decided(spline, normals, certain, undecided, bounds, developable, threads)
+    if len(undecided) == 0 or not isinstance(spline, NetSpline):
+        return hits
+    numbers = np.unique(lines_of(spline, undecided, normals).keys >> 32)
+    if len(numbers) == 0:
+        return hits
+    others = hits.rows(np.flatnonzero(~np.isin(hits.normal_index, numbers)))
+    return others.merged(_displaced(spline, normals, numbers, threads))
+
+
+def _with_components(
+    spline: AnySpline, normals: Array, certain: list[Indices], undecided: Indices,
+    bounds: Array, developable: int, threads: int | None,
+) -> Hits:  # fmt: skip
+    """Return the hits as `_decided`, but one hit for each component; see `with_components`."""
+    hits = _decided(spline, normals, certain, undecided, bounds, developable, threads)
+    if len(undecided) == 0:
+        return hits
+    lines = lines_of(spline, undecided, normals)
+    numbers = np.unique(np.concatenate([lines.keys >> 32, meeting(spline, hits)]))
+    if len(numbers) == 0:
+        return hits
+    counted = hits
+    if isinstance(spline, NetSpline):
+        counted = _displaced(spline, normals, numbers, threads)
+    return with_components(spline, hits, lines, numbers, counted)
+
+
+def _displaced(spline: NetSpline, normals: Array, numbers: Indices, threads: int | None) -> Hits:
+    """Return the hits of slightly displaced normals in place of those with the given indices."""
+    beside = beside_lines(spline, normals[numbers])
+    found = Hits.joined(list(_in_turn(spline, beside, _decided, threads)))
+    return replace(found, keys=numbers[found.normal_index] << 32 | found.patch_index)
 
 
 def _without_tips(spline: AnySpline, normals: Array, hits: Hits) -> Hits:

@@ -15,7 +15,6 @@ from ..base.aliases import Array
 from ..base.checks import finite_array, finite_number, text
 from ..base.errors import InputError, SurfaceError
 from ..base.formula_calls import python_function, vector
-from ..base.tolerances import SINGULAR_POINT
 from ..domain.inside import subcentroids
 from .developable import CellMeasure
 from .joints import Joints, Topology, merged_points
@@ -115,7 +114,7 @@ class NetSpline(PatchSpline, NetMethods):
     @cached_property
     def topology(self) -> Topology:
         """The topology of the patches: their edges, joints and corners."""
-        normals = python_function(formulas.control_normals)(self.patch())
+        normals = python_function(formulas.control_normals)(self._patch())
         control = np.stack([np.stack(x, axis=-1) for x in normals], axis=1)
         sizes = np.square(self.vectors).sum(axis=-1).max(axis=1)[:, None, None]
         return Topology(
@@ -136,35 +135,14 @@ class NetSpline(PatchSpline, NetMethods):
         points = self.control_nets.reshape(-1, 3)
         return math.hypot(*np.ptp(points, axis=0)), math.isqrt(self.patches)
 
-    def patch(self, rows: NDArray[np.int64] | slice = slice(None)) -> Patch:
+    def _patch(self, rows: NDArray[np.int64] | slice = slice(None)) -> Patch:
         """Return the vectors of the patches `rows` times `scale`, for formulas; p₀ is 0."""
         a, b, c, d, e = np.moveaxis(self.vectors[rows], 1, 0)
         zero = np.zeros_like(a)
         return Patch(vector(a), vector(b), vector(c), vector(d), vector(e), vector(zero))
 
-    def points_in_patches(self, patches: NDArray[np.int64], places: Array) -> Array:
-        """Return the points (k, 3) of patches (k,) at parameters u, v (k, 2)."""
-        x = python_function(formulas.envelope)(self.patch(patches), *places.T)
-        return np.stack(x, axis=1) / self.scale + self.control_nets[patches, 2]
-
-    def normals_in_patches(
-        self, patches: NDArray[np.int64], places: Array
-    ) -> tuple[Array, NDArray[np.bool_]]:
-        """Return unnormalized normals (k, 3) of patches (k,) at parameters u, v (k, 2).
-
-        At a singular point, which has no normal, the result is the normal of a nearby point towards
-        the centre of the patch. The second array (k,) is True for singular points.
-        """
-        patch = self.patch(patches)
-
-        def normals_at(at: Array) -> Array:
-            return np.stack(python_function(formulas.tangents)(patch, *at.T)[2], axis=1)
-
-        here, centre = normals_at(places), normals_at(np.full_like(places, 1.0 / 3.0))
-        lengths = (np.linalg.norm(x, axis=1) for x in (here, centre))
-        singular = np.less_equal(next(lengths), SINGULAR_POINT * next(lengths))
-        beside = normals_at(places + SINGULAR_POINT * (1.0 / 3.0 - places))
-        return np.where(singular[:, None], beside, here), singular
+    def _origins(self, rows: NDArray[np.int64]) -> Array:
+        return self.control_nets[rows, 2]
 
     @property
     def cap(self) -> tuple[Array, float]:
@@ -191,10 +169,10 @@ class NetSpline(PatchSpline, NetMethods):
         areas, angles = np.zeros(self.patches), np.zeros(self.patches)
         with np.errstate(divide="ignore", invalid="ignore"):
             for x, y in zip(u, v, strict=True):
-                N = np.stack(python_function(formulas.tangents)(self.patch(), x, y)[2], axis=1)
+                N = np.stack(python_function(formulas.tangents)(self._patch(), x, y)[2], axis=1)
                 area = np.linalg.norm(N, axis=1)
                 normals = vector(N / area[:, None])
-                K = python_function(formulas.curvature_at)(self.patch(), normals, x, y)[0]
+                K = python_function(formulas.curvature_at)(self._patch(), normals, x, y)[0]
                 areas += 0.5 / len(u) * area
                 angles += 0.5 / len(u) * np.nan_to_num(K * area)
         diagonal = self.extent[0] * self.scale

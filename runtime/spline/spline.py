@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...generated.spline import NEIGHBOURS, SCALE, TRIANGLE_NEIGHBOURS, triangle
+from ...generated.vectors import Patch
 from ..base.checks import checked_array, parameter_arrays, text
 from ..base.errors import InputError
+from ..base.formula_calls import python_function, vector
 from ..base.georeference import Georeference
 from ..base.threads import over_ranges
 from ..base.tolerances import SAME_PARAMETER
@@ -28,6 +31,8 @@ if TYPE_CHECKING:
 
 LONGEST_LABEL = 40
 PATCHES_AT_A_TIME = 1 << 14
+# The index of the coefficient of a patch's own cell in NEIGHBOURS.
+CENTRE = 4
 
 
 def short_label(name: str) -> str:
@@ -135,6 +140,23 @@ class Spline(PatchSpline, Methods):
         """(4,) float64 array: corner of the domain and size of a cell, (u0, v0, du, dv)."""
         (u0, u1), (v0, v1) = self.domain
         return np.array([u0, v0, (u1 - u0) / self.cells[0], (v1 - v0) / self.cells[1]])
+
+    def _coefficients_around(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Return the coefficients (k, 9, 3) that NEIGHBOURS lists, for the patches `rows`."""
+        cell, turn = np.divmod(rows, 4)
+        i, j = np.divmod(cell, self.cells[1])
+        steps = NEIGHBOURS[turn]
+        return self.coefficients[i[:, None] + 1 + steps[..., 0], j[:, None] + 1 + steps[..., 1]]
+
+    def _patch(self, rows: NDArray[np.int64] | slice = slice(None)) -> Patch:
+        """Return the vectors of the patches `rows` times `scale`, for formulas."""
+        around = self._coefficients_around(np.arange(self.patches)[rows])
+        steps = (around - around[:, CENTRE, None]) * (self.scale / SCALE)
+        read = np.moveaxis(steps[:, TRIANGLE_NEIGHBOURS], 1, 0)
+        return python_function(triangle)(*map(vector, read))
+
+    def _origins(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+        return self._coefficients_around(rows)[:, CENTRE]
 
     @property
     def _points(self) -> NDArray[np.float64]:

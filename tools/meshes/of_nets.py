@@ -98,7 +98,7 @@ def mesh(self: NetSpline, parts: int = 1) -> CreasedMesh:
     proper = (a != b) & (b != c) & (c != a)
     rows = rows[proper]
     return CreasedMesh(
-        self.points_in_patches(patches[first], uv[first]),
+        self._points_in_patches(patches[first], uv[first]),
         mean_normals(vertex[rows], normals[rows], count),
         uv[first], vertex[rows], np.full(count, -1), self.name,
         corner_normals=normals[rows], face_index=patches[rows[:, 0]],
@@ -140,7 +140,7 @@ def _normals(spline: NetSpline, patches: Indices, uv: Array, smooth: Links) -> A
     If all patches around a point are singular there, they share a normal only if their normals
     agree.
     """
-    N, singular = spline.normals_in_patches(patches, uv)
+    N, singular = spline._normals_in_patches(patches, uv)
     own = unit_or_zero(N)
     count, group = linked(len(own), *smooth)
     regular = _any(count, group, ~singular)

