@@ -95,10 +95,10 @@ class Loops:
 
     def _inwards(self, uv: Array) -> Array:
         """Return the points (k, 2); points on open sides are moved inwards, see INSIDE."""
-        return uv.clip(*self.limits)
+        return uv.clip(*self._limits)
 
     @cached_property
-    def limits(self) -> tuple[Array, Array]:
+    def _limits(self) -> tuple[Array, Array]:
         """The smallest and the largest parameters (2,) of points that may be inside."""
         low, high = np.array(self.domain).T
         nudge = INSIDE * (high - low)
@@ -141,11 +141,7 @@ class Loops:
 
     @cached_property
     def _cells(self) -> tuple[kernels.SegmentGrid, Array]:
-        """The cached result of `in_cells`."""
-        return self.in_cells()
-
-    def in_cells(self) -> tuple[kernels.SegmentGrid, Array]:
-        """Return the segments, sorted into cells, and `shifts`, both scaled by powers of two."""
+        """The segments, sorted into cells, and `shifts`, both scaled by powers of two."""
         sizes = self.box[1] - self.box[0]
         scales = np.array([scale_to_one(float(x)) for x in sizes])
         ends = [np.stack([x, np.roll(x, -1, axis=0)], axis=1) for x in self.polygons]

@@ -131,45 +131,6 @@ def find_inside(cells, shifts, places, first, last, inside):
                 inside[k] = is_inside(cells, u, v)
 
 
-class Joined(NamedTuple):
-    """The cells of L sets of polygons, concatenated, and their shifts (s, 4).
-
-    starts (L + 1, 6): the offsets of segments, starts, members, parities and shifts of each set,
-    and its number of rows of cells, which equals its number of columns. `cell_starts` and `members`
-    are relative to these offsets.
-    """
-
-    segments: NDArray[np.float64]
-    frames: NDArray[np.float64]
-    cell_starts: NDArray[np.int32]
-    members: NDArray[np.int32]
-    parity: NDArray[np.bool_]
-    shifts: NDArray[np.float64]
-    starts: NDArray[np.int64]
-
-
-@jit
-def find_inside_each(joined, owners, places, inside):
-    """Write whether each point (k, 2) is inside a set of polygons, whose index is in `owners`."""
-    for k in range(owners.shape[0]):
-        owner = owners[k]
-        first = joined.starts[owner]
-        last = joined.starts[owner + 1]
-        cells = SegmentGrid(
-            joined.segments[first[0] : last[0]],
-            joined.frames[owner],
-            joined.cell_starts[first[1] : last[1]],
-            joined.members[first[2] : last[2]],
-            joined.parity[first[3] : last[3]].reshape(first[5], first[5]),
-        )
-        inside[k] = False
-        for s in range(first[4], last[4]):
-            if not inside[k]:
-                u = joined.shifts[s, 0] * places[k, 0] + joined.shifts[s, 1]
-                v = joined.shifts[s, 2] * places[k, 1] + joined.shifts[s, 3]
-                inside[k] = is_inside(cells, u, v)
-
-
 @jit
 def find_parities(cells):
     """Write the parities at the corners of the cells.
