@@ -24,7 +24,8 @@ ANGLE_ERROR = 2.0**-40
 # product.
 SHORT_CONTROL_NORMAL = 2.0**-30
 # A point counts as singular where the normal is shorter than this, relative to the normal at the
-# centre of its patch. Its curvatures are evaluated at another point, at this distance in u, v.
+# centre of its patch. The curvatures of a singular point are evaluated at another point, which is
+# nearer to the centre of the patch by about this distance in u, v.
 SINGULAR_POINT = 2.0**-20
 # A point counts as near a singular point where the normal is shorter than this, relative to the
 # square of the tangents: the direction of the normal there needs parameters with many digits.
@@ -46,11 +47,11 @@ DOUBLE_ROOT = 1e-6
 # The iteration for the smallest cap has converged if its radius grows by less than this, in
 # degrees.
 CAP_RADIUS_ERROR = 1e-12
-# The error of the height z of points on a circle of latitude of the unit sphere. Points that are
-# not on the circle differ from its height by more than this.
+# The error of the height z of points on a circle of latitude of the unit sphere. A point counts as
+# on the circle if its height differs from that of the circle by at most this.
 CIRCLE_HEIGHT_ERROR = 1e-12
-# The flip or collapse of an edge must raise a cosine, or the tangent of an angle of a triangle, by
-# at least this, which exceeds their rounding errors.
+# The flip or collapse of an edge must raise a quality of triangles (a cosine, or the tangent of an
+# angle) by at least this, which exceeds the rounding error of the quality.
 QUALITY_GAIN = 1e-14
 # A triangle whose smallest angle (radians) is below this counts as a triangle without area: its
 # area vanishes in files of single precision.

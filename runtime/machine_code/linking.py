@@ -1,9 +1,9 @@
 """Linking of kernels: each part is optimised once, and compiled to machine code with the kernel.
 
-Numba optimises a function together with everything that it calls, and makes machine code of all of
-it, at each level of calls: it optimises a function four times if a kernel calls it through three
-others. Here a part is optimised once, on its own, together with small parts that may be inlined; a
-kernel is linked with the parts that it needs. The results are the same.
+Numba optimises a function together with all functions that it calls, and makes machine code of all
+of them, at each level of calls: a function that a kernel calls through three others is optimised
+four times. Here a part is optimised once, on its own, together with small parts that may be
+inlined; a kernel is linked with the parts that it needs. The results are the same.
 
 This overrides methods of Numba that are not public. If a version of Numba lacks them, it compiles
 in its own way, which takes twice as long.
@@ -44,7 +44,7 @@ class Part(JITCodeLibrary):
 
     @property
     def codegen(self) -> Any:
-        """The owner of the code; the execution engine only takes linked kernels."""
+        """The owner of the code: the part itself, as the execution engine takes only kernels."""
         return self
 
     def set_env(self, name: str, environment: Any) -> None:

@@ -38,10 +38,11 @@ def row_start(face, s, frequency):
 def write_normals(face, frequency, places, first, count, tile):
     """Write the unit normals of points of a face to the first three rows of a tile.
 
-    `places` (2 STEP) are the rows and the columns of points: `count` points from `first` on are
-    written, and up to VECTOR − 1 more. A coordinate is a + b φ with integers a and b, divided by
-    the length. Before the square root, only b φ and this sum are rounded, so that mirror images
-    agree bit for bit, and a point of two faces is the same on both.
+    `places` (2 STEP) lists the rows of points, then their columns. The normals of `count` points
+    are written, from position `first` of the lists on, and those of up to VECTOR − 1 further
+    points. A point has coordinates a + b φ with integers a and b; the normal is this vector divided
+    by its length. In a coordinate only b φ and the sum are rounded, so that mirror images agree bit
+    for bit, and a point on an edge has the same normal in both faces.
     """
     long_vectors()
     a_x, b_x, a_y, b_y, a_z, b_z = line(face, 0)
@@ -65,7 +66,7 @@ def write_normals(face, frequency, places, first, count, tile):
 def line(face, k):
     """Return the first corner of a face (k = 0), or the step to the next row (1) or column (2).
 
-    Its coordinates x, y, z are pairs a, b for a + b φ.
+    The coordinates of this vector are a + b φ. The result is a and b for x, for y, and for z.
     """
     return (
         LINES[face, k, 0],

@@ -13,9 +13,10 @@ NEAR = 5.6e-16
 
 @jit
 def are_unit(vectors, first, last):
-    """Return whether the vectors [first, last) (S, 3) have unit length, up to rounding.
+    """Return whether the rows [first, last) of `vectors` (S, 3) have unit length, up to rounding.
 
-    `normalized` agrees, although it rounds the sum of squares differently, by less than 4.5e-16.
+    `normalized` leaves such vectors unchanged: it divides by a length only if the length differs
+    from 1 by more than 4.5e-16, which allows for another rounding of the sum of squares.
     """
     far = 0
     for k in range(first, last):

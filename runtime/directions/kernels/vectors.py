@@ -9,7 +9,7 @@ from ...machine_code.jit import inline, loop
 
 # The largest number of lanes of a vectorized loop; arrays are padded by as many entries.
 VECTOR = 16
-# The number of samples of a tile, and the length of its rows, with room for some more.
+# A tile has TILE samples. Its rows have the length STEP, with room for VECTOR more samples.
 TILE = 64
 STEP = TILE + VECTOR
 

@@ -6,9 +6,9 @@ corner crosses an odd number of segments.
 
 Every point is displaced infinitesimally along u, and much less along v (Simulation of Simplicity,
 Edelsbrunner and Mücke 1990). So no point is on a segment, or level with a vertex, and exactly one
-of two polygons with a common side contains a point of it. Comparisons with the ends of a segment
-are exact. Only inside its bounding box a rounded product decides, always the same one, so that
-rounding matters only next to a segment.
+of two polygons with a common side contains a point of this side. Comparisons with the ends of a
+segment are exact. A rounded product decides only for a point inside the bounding box of a segment,
+always the same product, so that rounding matters only next to a segment.
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ def find_parities(cells):
         while j < rows and frame[1] + j * frame[5] < segment[3]:
             v = frame[1] + j * frame[5]
             if segment[1] <= v:
-                # Column i becomes that of the last corner left of the segment, in row j.
+                # In row j, find the column i of the last corner that is left of the segment.
                 share = (v - segment[1]) / (segment[3] - segment[1])
                 near = segment[0] + share * (segment[2] - segment[0])
                 i = cell_along(near, frame[0], frame[2], columns)

@@ -105,7 +105,7 @@ def begin(uv, count, rows, box):
 def store(target, row, patch, u, v, size):
     """Store the sample at (u, v), unless it is singular or K has the wrong sign.
 
-    At parabolic points K is about the error of the normal, and has either sign.
+    K may have the wrong sign if it is 0 up to the error of the normal, as at parabolic points.
     """
     L, _, K, H = at_jet(patch)
     if target.signs[row] * K >= -NORMAL_ERROR * 4.0 * H * H and is_regular(patch, L, K):
@@ -113,7 +113,7 @@ def store(target, row, patch, u, v, size):
         target.uv[row, 0] = u
         target.uv[row, 1] = v
         set_row(target.points, row, Vector(patch.p.x * unit, patch.p.y * unit, patch.p.z * unit))
-        # K may be 0, with either sign.
+        # The stored K has the required sign, also if K is 0.
         sign = target.signs[row] if target.signs[row] != 0.0 else K
         target.gaussian[row] = math.copysign(K * size * size, sign)
         target.mean[row] = H * size
@@ -139,8 +139,9 @@ def newton(jets, count, rows, target, box, size, tolerance, noise):
     """Finish the first `count` rows or move them by a step; return the number of unfinished rows.
 
     A row is finished if the squared sine of the angle between its normal and that of the surface is
-    at most `tolerance`, or if it is at most `noise` and does not decrease. Its point and curvatures
-    are written. `size`, a power of two, scales the surface to cells of about the size 1.
+    at most `tolerance`, or if the squared sine is at most `noise` and does not decrease. The point
+    and the curvatures of a finished row are written. `size`, a power of two, scales the surface to
+    cells of about the size 1.
     """
     u0, u1, v0, v1 = box.ends
     du, dv = box.cell

@@ -86,7 +86,7 @@ def add_place(answers, number, row, domain):
 def merge_places(places, numbers, groups, first, last, fast, fast_starts, domain, keep, answers):
     """Write to `keep` whether to keep each solution: solutions in the domain, each once.
 
-    Solutions of which this cannot be decided are listed as boxes.
+    A solution is listed as a box if it is unknown whether it is the same as another one.
     Solutions (k, 10) of a group share one normal, whose index is in numbers (k,). The groups are
     [first, last); further solutions of group g, fast[fast_starts[g]:fast_starts[g + 1]], are always
     kept. Return the next group, `last` unless there was no more room for boxes.
@@ -134,7 +134,7 @@ def relation(row, other, period):
         return 1
     du = shift_to(other[0], row[0], period[0])
     dv = shift_to(other[1], row[1], period[1])
-    # Above the rounding errors of shifts.
+    # The slack exceeds the rounding errors of the shifts by periods.
     slack_u, slack_v = 4.0 * EPS * (abs(du) + abs(row[0])), 4.0 * EPS * (abs(dv) + abs(row[1]))
     apart_u = abs(other[0] + du - row[0]) > other[2] + row[2] + slack_u
     apart_v = abs(other[1] + dv - row[1]) > other[3] + row[3] + slack_v

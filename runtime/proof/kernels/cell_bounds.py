@@ -42,7 +42,8 @@ SMOOTH = 1e-9
 # have no bound.
 WIDE, OPEN = 1.3, 2.1
 # A cell counts as regular if the contraction factors of Newton's simplified method are below this,
-# for the directions of the Bernstein ordinates of its normals.
+# for five normals n: the directions of the Bernstein ordinates of x_s × x_t at the corners and in
+# the middle.
 REGULAR = 0.8
 # A Hessian whose determinant is smaller than this, relative to its entries, counts as singular.
 FLAT = 1e-9
@@ -222,8 +223,8 @@ def widened(bounds, slack):
 def rests_in(cells, j, size_u, size_v):
     """Return bounds of the coordinates of the remainders of x_s and x_t in a part of cell j.
 
-    The patch osculates at the centre of the part; the sizes are those of the part, relative to the
-    cell.
+    The patch osculates the surface at the centre of the part. `size_u` and `size_v` are the sizes
+    of the part, relative to the cell.
     """
     x0, x1, x2, x3 = thirds_along(cells.thirds, j, 0)
     y0, y1, y2, y3 = thirds_along(cells.thirds, j, 1)
@@ -244,7 +245,7 @@ def rests_in(cells, j, size_u, size_v):
 
 @inline
 def thirds_along(thirds, j, x):
-    """Return bounds of coordinate x of x_sss, x_sst, x_stt, x_ttt."""
+    """Return bounds of the coordinate with index `x` (0, 1 or 2) of x_sss, x_sst, x_stt, x_ttt."""
     return (
         abs(thirds[j, x]) + thirds[j, 12 + x],
         abs(thirds[j, 3 + x]) + thirds[j, 15 + x],
@@ -355,7 +356,7 @@ def write_noise(tape, errors, reach, cells, j):
             h_u * h_v * errors[at + UV] + 4.0 * EPS * abs(hot[j, 3 + x]),
             2.0 * h_v * h_v * errors[at + VV] + 4.0 * EPS * abs(hot[j, 6 + x]),
         )
-    # The derivatives themselves change over the cell.
+    # Rounding is relative to derivatives, which change over the cell by the third derivatives.
     noise[j, FIRST_S] = first_s + 8.0 * EPS * (t0 + t1 + t2)
     noise[j, FIRST_T] = first_t + 8.0 * EPS * (t1 + t2 + t3)
     noise[j, SECOND] = second + 8.0 * EPS * (t0 + t1 + t2 + t3)

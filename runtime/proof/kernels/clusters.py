@@ -39,8 +39,8 @@ def join(hull, u0, u1, v0, v1, period):
 def cluster(boxes, count, cells, period, hulls, owner):
     """Write the hulls (…, 4) of clusters, u₀, u₁, v₀, v₁, and the cluster of each box.
 
-    Boxes (count, 5) are parts of cells: u, v, the number of the cell, and half their widths along u
-    and v relative to those of the cell. Returns the number of hulls.
+    Boxes (count, 5) are parts of cells: u, v, the index of the cell, and half the widths of the box
+    along u and v, relative to those of the cell. Returns the number of hulls.
     """
     hull_count = 0
     for k in range(count):

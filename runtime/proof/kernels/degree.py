@@ -6,10 +6,10 @@ is a graph over the tangent plane, minus the gradient of the height is
 
     G = (Y1 F2 − F1 Y2, F1 X2 − X1 F2) / (X1 Y2 − X2 Y1),    F = (n·x_u, n·x_v),
 
-with the coordinates (X1, Y1) of x_u and (X2, Y2) of x_v in the plane. It depends on no parameters,
-so that it is continuous at joints. If the Hessian of n·x has a determinant of one sign d in all
-parts, the index of each zero of G has this sign, and the winding number of G along the border is
-their sum: d if there is one zero, 0 if there is none.
+with the coordinates (X1, Y1) of x_u and (X2, Y2) of x_v in the plane. G does not depend on the
+parameters, so that it is continuous at joints. If the Hessian of n·x has a determinant of one sign
+d in all parts, the index of each zero of G is d. The winding number of G along the border of the
+box is the sum of these indices: d if there is one zero, 0 if there is none.
 """
 
 from __future__ import annotations
@@ -59,7 +59,8 @@ LONGEST, SHORTEST = 1.0, 2.0**-14
 # The relative error of the computed gradient at ends of segments is at most this, so that two
 # errors and the jump at a joint add up to less than half a turn.
 ERROR = 0.3
-# The normal differs from normals of the border by at least this multiple of the tolerance.
+# The given normal differs from the normals on the border of a box by at least this multiple of the
+# tolerance of normals.
 AWAY = 4.0
 STEPS = 8
 # The number of entries of a path along a border, see `walk_side`.
@@ -68,10 +69,11 @@ PATH = 6
 # the upper end of the domain.
 INSIDE, SEAM, BEFORE, AFTER = range(4)
 # A hull counts as small if it is at most LARGEST times the domain. Its index is computed along the
-# border of a larger box, since the gradient is too small next to the hull. On each side the box is
-# larger by a fraction of the domain (those in AROUND are tried in turn) or, if that is more, by
-# GROWN times the hull. For a large hull only fractions from FAR on are tried, and BEYOND replaces
-# GROWN. The border has up to LANES cells, whose half width across the border is THIN times the box.
+# border of a larger box, since the gradient is too small next to the hull. On each side the box
+# exceeds the hull by a fraction of the domain (the fractions in AROUND are tried in turn) or, if
+# that is more, by GROWN times the size of the hull. For a large hull only fractions from FAR on are
+# tried, and BEYOND replaces GROWN. The border has up to LANES cells, whose half width across the
+# border is THIN times the size of the box.
 LARGEST, AROUND, THIN = 0.01, (3e-6, 1e-4, 1e-3, 1e-2, 3e-2), 2.0**-7
 FAR, BEYOND = 1e-2, 0.1
 
@@ -184,10 +186,10 @@ def along_side(side, x):
 
 @loop
 def gradient_at(tile, k, n, e1, e2, s, t):
-    """Return the gradient at s, t in part k, times the area |x_s × x_t|, and terms of its bound.
+    """Return the gradient at s, t in part k, times the area |x_s × x_t|, and terms of its bounds.
 
-    These are the forms A, B, C; the derivatives F1, F2; bounds of |x_s| and |x_t|; and a bound of
-    the error of the gradient.
+    The other results are the forms A, B, C; the derivatives F1, F2; bounds of |x_s| and |x_t|; and
+    a bound of the error of the gradient.
     """
     patch = patch_of(tile.hot, k)
     a, b, c, p, q = linear_forms_of(patch, n)
@@ -235,7 +237,7 @@ def turns_less_than_half(tile, k, n, e1, e2, side, x, step):
         change_s, change_t = half * length(patch.b), half * length(patch.c)
     change = change1 * (size_t + change_t) + change2 * (size_s + change_s)
     change += abs(f1) * change_t + abs(f2) * change_s
-    # The errors of x_s and x_t are also multiplied by the changes of F1 and F2.
+    # The errors of x_t and x_s, times the changes of F1 and F2, are added to the error.
     rest = error + change1 * tile.hot[k, REST_T] + change2 * tile.hot[k, REST_S]
     size = math.hypot(g1, g2)
     area = size_s * size_t
@@ -244,10 +246,10 @@ def turns_less_than_half(tile, k, n, e1, e2, side, x, step):
 
 @loop
 def walk_side(tile, k, n, e1, e2, side, path):
-    """Follow the gradient along a side of part k; return whether it is known to have no zero.
+    """Follow the gradient along a side of part k; return whether it is known to have no zero there.
 
-    `path` (6,) are the angle turned through so far, the last gradient, the first one, and whether
-    there was one.
+    `path` (6,) has the angle by which the gradient has turned so far, the last gradient, the first
+    gradient, and 1 if there was a first gradient, else 0.
     """
     x, step = 0.0, LONGEST
     while True:
@@ -279,7 +281,7 @@ def start_path(path):
 
 @inline
 def turns_of(path):
-    """Return the winding number of a path, with the angle that closes it."""
+    """Return the winding number of a path, including the angle that closes the path."""
     total = path[0] + angle_between(path[1], path[2], path[3], path[4])
     return np.rint(total / (2.0 * math.pi))
 
@@ -378,10 +380,11 @@ def is_free(side, in_u, in_v):
 
 @loop
 def write_ring(tape, work, tile, ends, along, across, in_u, in_v):
-    """Write bounds over cells along the border of a box, counter-clockwise, inside of it.
+    """Write bounds over cells inside a box along its border, in counter-clockwise order.
 
-    The box is cut at joints into parts with these ends; `in_u` and `in_v` are results of `grow`.
-    The side of each cell is written to `work.levels`. Return the number of cells.
+    Joints cut the box into `along` parts along u and `across` parts along v, whose ends are the
+    rows of `ends`. `in_u` and `in_v` are results of `grow`. The index of the side at which each
+    cell lies is written to `work.levels`. Return the number of cells.
     """
     count = sides = 0
     for side in range(4):
@@ -479,8 +482,8 @@ def write_nearest(tape, work, tile, count, n, row):
 def reach_at(tile, k, n, s, t, p, q):
     """Return a bound of the distance from s, t, where F is (p, q), to a solution in part k.
 
-    The second result is the addition to this bound for the tolerance. The third result is True if
-    there is no solution, even with the tolerance.
+    The second result is the length that the tolerance of normals at joints adds to this bound. The
+    third result is True if there is no solution, even with the tolerance.
     """
     patch = patch_of(tile.hot, k)
     a, b, c, _, _ = linear_forms_of(patch, n)
@@ -501,9 +504,10 @@ def reach_at(tile, k, n, s, t, p, q):
 
 @loop
 def degree_on(tape, work, tile, joints, domain, hull, n, ends, path, row):
-    """Decide whether a box has no point with the normal n, or one, which is written to a row.
+    """Decide whether a box has no point with the normal n or exactly one; write this one to `row`.
 
-    Returns DECIDED, or UNDECIDED if it may have several; row[4] is 0 if it has none.
+    Returns DECIDED, or UNDECIDED if the box may have several such points; row[4] is 0 if it has
+    none.
     """
     along, across = write_parts(tape, work, tile, joints, domain, hull, ends)
     if along * across == 0:

@@ -39,14 +39,16 @@ class Disc(NamedTuple):
     hot (1, 15): the vectors a, b, c, d, e of the patch that osculates at the pole, by s and t.
     changes (m, 3, 3): bounds of x_ss, x_st, x_tt minus a, b, c, within the distance to which bounds
     hold, within half of it, …
-    frame (14): two numbers e0, e1: computed derivatives of h by s and t have errors up to e0 + e1 /
-    r, in units of the size; the radius of the disc; the least u, and the length of the interval of
-    u; the value of the other parameter at the pole, whether this parameter grows with r (1 or −1),
-    and the index, 0 or 1, of u; the unit of s and t; how far bounds hold; the largest derivatives
-    of r u and of r by the coordinates of the plane; whether the tape is that of (x − p) / r; and 1
-    if angles in the plane grow with u.
+    frame (14): two numbers e0, e1: computed derivatives of h by s and t have errors up to e0 + e1
+    size / r; the size, which is the radius of the disc in r; the least u, and the length of the
+    interval of u; the value of the other parameter at the pole; 1 if this parameter grows with r,
+    else −1; the index, 0 or 1, of u among the parameters; the unit of s and t in the plane; the
+    radius in s and t to which bounds hold; the largest lengths of r ∇u and ∇r, where ∇ is the
+    gradient by the coordinates of the plane; 1 if the tape is that of (x − p) / r, else 0; and 1
+    if angles in the plane grow with u, else −1.
     basis (3, 3): derivatives of x by the coordinates of the plane and by h.
-    directions (k, 2): angles in the plane at equal steps of u, and distances over r there.
+    directions (k, 2): for equal steps of u, the angle of x_r (u, 0) in the plane, with the sign
+    with which it grows with u, and the length of x_r (u, 0) in the plane.
     """
 
     hot: NDArray[np.float64]
@@ -58,7 +60,7 @@ class Disc(NamedTuple):
 
 @inline
 def bound_of(changes, ring, k, n):
-    """Return the largest change, in a ring, of the product of n with second derivative k."""
+    """Return the largest change in a ring of n·x_ss (k = 0), n·x_st (k = 1) or n·x_tt (k = 2)."""
     return (
         changes[ring, k, 0] * abs(n.x)
         + changes[ring, k, 1] * abs(n.y)
@@ -74,9 +76,9 @@ def rows_of(y11, y12, y22, p, q):
 
 @loop
 def change_in(disc, ring, n, y11, y12, y22):
-    """Return a bound of the change of the Hessian in a ring, times the inverse of that at the pole.
+    """Return a bound of the change of the Hessian in a ring, times the inverse Hessian at the pole.
 
-    y11, y12, y22 are the entries of this inverse.
+    y11, y12, y22 are the entries of the inverse.
     """
     a, b, c = (
         bound_of(disc.changes, ring, 0, n),
@@ -202,7 +204,7 @@ def place_in(tape, work, disc, n):
         else:
             u, r = u + u_s * s1 + u_t * t1, r + r_s * s1 + r_t * t1
             u -= frame[TURN] * math.floor((u - frame[START]) / frame[TURN])
-    # Bounds have to hold in the square around the point.
+    # The solution lies in a square around the point; bounds have to hold in all of this square.
     if not best_length + 1.5 * least <= whole:
         least = math.inf
     return best_u, best_r, least, d

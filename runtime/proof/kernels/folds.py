@@ -27,7 +27,7 @@ NO_PLACE, DOUBLE, UNKNOWN = range(3)
 # The rotated coordinates p and w are between −ALONG and ALONG, and between −ACROSS and ACROSS. So
 # bounds are needed for |s|, |t| ≤ √(2² + 2) < WIDER.
 ALONG, ACROSS, WIDER = 2.0, 1.4143, 2.5
-# The largest number of steps towards the extremum; the length of a step that ends them.
+# The largest number of steps towards the extremum, and the length below which a step is the last.
 STEPS, SMALL = 30, 1e-10
 
 

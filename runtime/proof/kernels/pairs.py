@@ -219,8 +219,8 @@ def bound_pairs(t, first, count):
         rounding = max(i11 * round_s + i12 * round_t, i12 * round_s + i22 * round_t)
         tolerance = max(i11 * tol_s + i12 * tol_t, i12 * tol_s + i22 * tol_t)
         s, z = model_start(a, b, c, p, q, t0, t1, t2, t3, y11, y12, y22)
-        # The residual of the model at the point of the cell that is nearest to the model's
-        # solution; if bounds end at a joint, at a point inside of it.
+        # The residual of the model, at the point of the cell that is nearest to the solution of the
+        # model. If bounds end at a joint, this point is moved from the joint into the cell.
         most = most_of(t[i + REACHED], gap)
         s1, z1 = min(max(s, -most), most), min(max(z, -most), most)
         _, _, _, p1, q1 = model_at(a, b, c, p, q, t0, t1, t2, t3, s1, z1)

@@ -340,9 +340,9 @@ def is_curve(tape, work, cells, boxes, rows, count, owner, n):
 
 @loop
 def settles(tape, work, cells, box, n):
-    """Move from the centre of a box to a solution by Gauss–Newton steps, to work.u, work.v.
+    """Move from the centre of a box towards a solution by Gauss–Newton steps; write u, v to `work`.
 
-    Return whether there is one near the box, with a residual that rounding explains.
+    Return whether the steps reach a point near the box whose residual is explained by rounding.
     """
     j, outputs = int(box[2]), tape.outputs
     h_u, h_v = cells.place[j, 2], cells.place[j, 3]

@@ -37,7 +37,10 @@ class SampleFields(NamedTuple):
 
 @inline
 def derivative(registers, x, y, z, at, factor):
-    """Return the derivative of (x, y, z) at the place `at` of registers, times a factor."""
+    """Return the vector of the entries x + at, y + at, z + at of `registers`, times a factor.
+
+    It is a derivative of the coordinates, whose registers start at x, y and z.
+    """
     return Vector(
         factor * registers[x + at], factor * registers[y + at], factor * registers[z + at]
     )

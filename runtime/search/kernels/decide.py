@@ -136,9 +136,10 @@ def wide_normal(n, unit):
 
 @loop
 def note(D, U, V, W, forms, signs):
-    """Set those signs that are still 0 to the signs of U, V, W, the coefficients of one monomial.
+    """Set those signs that are still 0 to the signs of the coefficients U, V, W of one monomial.
 
-    If forms[0] is still 0, the coefficients D, U, V become `forms`. Return whether no sign is 0.
+    If forms[0] is still 0, write the coefficients D, U, V to `forms`. Return whether all signs are
+    different from 0.
     """
     if forms[0] == 0.0:
         forms[0], forms[1], forms[2] = D, U, V

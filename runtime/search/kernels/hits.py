@@ -254,7 +254,7 @@ def fill_samples(
             number, patch = key >> 32, key & NUMBER
             indices[k], indices[STEP + k] = number, patch
             put(tile, NORMAL, k, row_vector(normals, np.uint64(number)))
-            # Consecutive normals often have the same two patches.
+            # If normals have two hits each, samples k and k − 2 often have the same patch.
             if k > 1 and indices[STEP + k - 2] == patch:
                 copy_patch(tile, k, k - 2)
             else:

@@ -278,8 +278,8 @@ def tangent_bounds(patch):
 def least_cosine(mu, scale, axis, net):
     """Return a lower bound of the cosines between a unit vector (3,) and the normals of the spline.
 
-    It is the least cosine with a control normal; after the first negative one, no more patches are
-    examined. `net` (6, 3) is a work array.
+    The bound is the least cosine with a control normal. After the first negative cosine, no more
+    patches are examined. `net` (6, 3) is a work array.
     """
     columns = mu.shape[1] - 2
     towards = Vector(axis[0], axis[1], axis[2])

@@ -69,9 +69,9 @@ class Pairs(NamedTuple):
 def search(kind, pieces, lists, normals, order, first, last, memory, found):
     """Write the pairs of the normals order[first], …, order[last − 1] and pieces to `found`.
 
-    All pieces are of one kind; `order` (S,) are keys of `order_normals`. Return `last` and 0, or,
-    if `found` was full before, the position in `order` to go on from, and the capacity needed
-    there.
+    All pieces are of one kind; `order` (S,) are keys of `order_normals`. Return `last` and 0. If
+    `found` has no room for a tile, return the position in `order` at which the tile begins, and the
+    capacity that the tile needs.
     """
     tile, cap, near = memory
     cones, starts, members = pieces.cones, lists.starts, lists.members

@@ -20,8 +20,8 @@ from numba.core import types
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, overload, register_model
 
-# The format of floating-point numbers: the bits of the mantissa as an integer, the mask of those
-# that are stored, and the exponent of the last one in the smallest numbers.
+# The format of floating-point numbers: the number of bits of the mantissa, the mask of the bits of
+# the mantissa that are stored, and the exponent of the last bit of the smallest numbers.
 MANTISSA, FRACTION, LOWEST = 53, (1 << 52) - 1, -1074
 LIMB, PAIR, BIT = ir.IntType(64), ir.IntType(128), ir.IntType(1)
 
@@ -163,7 +163,7 @@ operation(operator.neg, Wide)(ir.IRBuilder.neg)
 
 @operation(operator.mul, types.Integer, Wide)
 def weighted(builder: Any, weight: Any, x: Any) -> Any:
-    """Emit the product with a small weight, which takes spare bits."""
+    """Emit the product of a wide integer and a small weight, which must fit into the spare bits."""
     return builder.mul(builder.sext(weight, x.type), x)
 
 
@@ -208,7 +208,7 @@ def long_product(builder: Any, x: Any, y: Any) -> Any:
 
 
 def limbs(builder: Any, x: Any) -> list[Any]:
-    """Emit the pieces of 64 bits of a number, each as the lower half of a pair."""
+    """Emit the limbs (64 bits) of a number, each as an integer of 128 bits."""
     places = range(0, x.type.width, LIMB.width)
     pieces = (builder.trunc(builder.lshr(x, x.type(place)), LIMB) for place in places)
     return [builder.zext(piece, PAIR) for piece in pieces]
