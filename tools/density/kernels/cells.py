@@ -32,7 +32,7 @@ def distance_of(v, w):
 
 @loop
 def squared_sine(patch, s, t, sign, n, least):
-    """Return sin² of the largest angle from n to normals of half a cell; 2 if not acute.
+    """Return sin² of the largest angle from n to normals of half a cell; 2 if it is not acute.
 
     The normals are combinations of control normals; control normals shorter than `least` are
     ignored. The half is the triangle of the corner s, t and the two corners a step of `sign` away
@@ -84,8 +84,9 @@ def evaluate_cells(jets, boxes, places, limits, size, centre, finest, target, ro
     between the normal at the place and a normal of the cell, 0 if it is rounding error, 2 if an
     angle is not acute or there is no normal; the lengths of the cell along u and v; its bends along
     u and v, relative to the lengths, 0 if they are rounding error; its area.
-    limits (M,): least radii of curvature, which replace smaller ones. A limit that is 0 on entry
-    becomes the width of the cell, or of a cell with the sides `finest` (2,).
+    limits (M,): least radii of curvature, which replace smaller radii. A limit that is 0 on entry
+    becomes the width of the cell in space, along u or v, whichever is smaller; sides shorter than
+    `finest` (2,), in parameters, count as `finest`.
     """
     for k in range(jets.shape[0]):
         du = boxes[k, 2] - boxes[k, 0]

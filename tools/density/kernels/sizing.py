@@ -14,7 +14,7 @@ from ....runtime.machine_code.jit import inline
 
 
 class TargetDensity(NamedTuple):
-    """Samples per area, up to a factor: a κ^(2e) + b |K|^e, from the floor to the ceiling.
+    """Samples per area, up to a factor: a κ^(2e) + b |K|^e, clipped to floor and ceiling.
 
     κ is the larger principal curvature in modulus, a the curvature weight, b the Gauss weight and e
     the exponent. Curvatures are those of the scaled surface.

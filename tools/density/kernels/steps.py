@@ -53,9 +53,9 @@ def shared_steps(forms, swapped, limits, share, shortest, longest, along_u, alon
     At first, steps along u are a share of the longest that the limits allow. Then steps along v,
     and at last steps along u, are as long as possible.
 
-    `forms` are the third and the first fundamental form (3, k, l), the maxima (k,) along v of the
-    entry e of each, and the width of the domain; `swapped` are the same with u and v exchanged.
-    Steps are at least the part `shortest` of the domain, and at most the part `longest`.
+    `forms` are the third and the first fundamental form (3, k, l), the maxima (k,) of e and of E
+    along v, and the width of the domain; `swapped` are the same with u and v exchanged. Steps are
+    at least the part `shortest` of the domain, and at most the part `longest`.
     """
     third, first, largest_of_third, largest_of_first, width = forms
     for i in range(along_u.size):

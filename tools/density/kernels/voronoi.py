@@ -101,8 +101,8 @@ def list_samples(grids, lists, radius, samples, near):
 
     Write the indices of the samples near the box of all candidates to `near`, and return their
     number; the lists hold positions in `near`. If `lists.entries` is empty, each of `lists.starts`
-    becomes the number of samples of a bucket. Otherwise it has to be the position of the first
-    entry of the bucket, and becomes that of the last entry, plus 1.
+    becomes the number of samples of a bucket. Otherwise each of `lists.starts` has to be the
+    position of the first entry of a bucket, and becomes the position after its last entry.
     """
     count = 0
     for k in range(samples.shape[0]):
@@ -197,10 +197,10 @@ def add_moments(grids, lists, samples, room, moments):
     """Add the fine points in the cells of candidates to the moments (N, 4) of the nearest samples.
 
     The moments of a sample are the sum of weights times points (3), and the sum of weights. The
-    weight of a point is the area times w² times the squared distance from the sample. A sample at
-    the weighted mean is a critical point of the integral, over its Voronoi cell, of w² times the
-    fourth power of the distance. The mean is near the centre of the smallest ball around the cell.
-    Candidates without a listed sample are left out.
+    weight of a point is the area of the cell times w² times the squared distance of the point from
+    the sample. A sample at the weighted mean is a critical point of the integral, over its Voronoi
+    cell, of w² times the fourth power of the distance. The mean is near the centre of the smallest
+    ball around the cell. Candidates without a listed sample are left out.
     """
     candidates, sides, sums = grids.candidates, lists.sides, room.moments
     for bucket in range(grids.starts.size - 1):
@@ -280,12 +280,13 @@ def turn_of(candidates, at, square, count, room):
 def find_widest(grids, lists, samples, bounds, room, found, gaps):
     """Find the point of each cell that is farthest from all samples, if at least least/√w away.
 
-    found (M,) are the indices of these fine points in their cells; −1 for the candidate itself, if
-    its bucket has no samples or a chord counts; −2 if all points are nearer. gaps (M, 2) are w, and
-    w times the squared distance d². If w = κ², this product is about the squared chord c² between
-    the normals of the point and of the nearest sample. Where κ jumps, c² at the candidate may be
-    larger: then it counts instead, with w = c²/d² up to the ceiling. A chord above `most` never
-    counts: it is between the two sides of an edge. `bounds` are `least`, `most` and the ceiling.
+    found (M,): for each cell, the index of this fine point; −1 for the candidate itself, if its
+    bucket has no samples or the chord at the candidate counts; −2 if all points are nearer. gaps
+    (M, 2) are w, and w times the squared distance d². If w = κ², this product is about the squared
+    chord c² between the normals of the point and of the nearest sample. Where κ jumps, c² at the
+    candidate may be larger: then it counts instead, with w = c²/d² up to the ceiling. A chord above
+    `most` never counts: the two normals belong to the two sides of an edge. `bounds` are `least`,
+    `most` and the ceiling.
     """
     candidates, sides = grids.candidates, lists.sides
     least, most, ceiling = bounds

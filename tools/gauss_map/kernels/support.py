@@ -22,7 +22,7 @@ OUTSIDE = 0
 INSIDE = 1
 DOUBTFUL = 2
 
-# (patch, normals, u_values, v_values, points, hessians, K_values, H_values)
+# The arguments are (patch, normals, u_values, v_values, points, hessians, K_values, H_values).
 branches_of_patch = jit(support_function.branch)
 
 

@@ -11,7 +11,8 @@ from ....runtime.base.tolerances import QUALITY_GAIN
 from ....runtime.machine_code.jit import jit, loop
 from .flips import are_joined, corner_of, smallest_cosine, smallest_tangent
 
-# Where triangles are far from the normals, the smallest cosine may fall by this, since b moves.
+# If triangles are far from the normals, a collapse may lower the smallest cosine by this: it moves
+# b.
 COSINE_LOSS = 0.1
 
 
@@ -70,9 +71,9 @@ def cosine_with(points, normals, triangles, sides, t, b, a, turn):
 def tangent_after(points, normals, triangles, sides, neighbours, least, first, b, a, fan):
     """Return the smallest tangent around b after b is moved to a, or −1 if that is not allowed.
 
-    `first` is a triangle with both corners. The move is allowed if the smallest tangent rises, the
-    smallest cosine falls to no less than `least`, or only a little, b is not on a boundary, and the
-    mesh remains a surface.
+    `first` is a triangle with both corners. The move is allowed if four conditions hold: the
+    smallest tangent rises; the smallest cosine is at least `least` afterwards, or falls by at most
+    COSINE_LOSS; b is not on a boundary; the mesh remains a surface.
     """
     count = find_fan(triangles, neighbours, first, b, a, fan)
     if count == 0:
