@@ -85,7 +85,8 @@ class AlignedGrid:
     def steps_for(self, count: float, distance: float) -> Steps:
         """Return the steps between the lines of a grid with `count` samples, for a scaled distance.
 
-        The count includes samples outside the trim.
+        The count includes samples outside the trim. Half the diagonals of cells in space are at
+        most `distance` if the count suffices for that.
         """
         return steps_for_count(self.forms, count, distance)
 

@@ -51,9 +51,9 @@ class Cover:
     `at_normals`. The added samples lie at the places of the cells `added`, first the samples of the
     `grid`, if it exists.
 
-    Samples are chosen among the places of `cells`. In a cover for a radius the cells have
-    `numbers`, in a cover for a count they have sides instead, see `Space.light`. `show_count` is
-    called with the number of samples whenever it grows.
+    Samples are chosen among the places of `cells`. The cells have `numbers` if the samples are
+    added for a radius. If they are added for a count, the cells have sides instead, see
+    `Space.light`. `show_count` is called with the number of samples whenever it grows.
 
     The first `fixed` samples, given or on the grid, are never removed.
 

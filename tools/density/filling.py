@@ -255,7 +255,7 @@ class Filling:
     # --- covers -----------------------------------------------------------------------------------
 
     def _by_radius(self) -> Cover:
-        """Return a cover for normals, an angle or a coverage.
+        """Return the cover if normals, an angle, or only a coverage is requested.
 
         It has samples at the requested normals, or, for an angle or a coverage, at lattices of
         normals; further samples fill the gaps.
@@ -283,7 +283,7 @@ class Filling:
         return self._to_radius(space, given, radius)
 
     def _to_radius(self, space: Space, given: Given, radius: float) -> Cover:
-        """Return a cover of a `Space` for a radius, with a sample on each piece.
+        """Return a cover with the covering radius `radius` and with a sample on each piece.
 
         If there are too many pieces (see SAMPLES_A_PIECE), some may have no sample.
         """
@@ -354,7 +354,7 @@ class Filling:
     # --- samples at normals -----------------------------------------------------------------------
 
     def _at_normals(self) -> Given:
-        """Return the samples at the requested normals, or, for a count, at lattices of normals."""
+        """Return samples at the requested normals or, if only a count is given, at lattices."""
         space, count = self.space, self.request.count
         if count is None:
             curved = np.flatnonzero(space.images > LEAST_IMAGE)

@@ -28,7 +28,7 @@ PARTS = (1.0, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3)
 def cover_on_grid(
     space: Space, request: Request, distance: float | None, show_count: Callable[[int], object]
 ) -> Cover:
-    """Return a cover for a count of samples, an angle or a coverage.
+    """Return a cover that begins with graded grids, for the requested count, angle or coverage.
 
     `distance` is the requested coverage, scaled as in `Space`.
     """
@@ -52,7 +52,7 @@ def _by_count(space: Space, count: int, show_count: Callable[[int], object]) -> 
 def _by_errors(
     space: Space, angle: float | None, distance: float | None, show_count: Callable[[int], object]
 ) -> Cover:
-    """Return a cover for an angle in degrees, or a scaled coverage, or both."""
+    """Return a cover that meets an angle in degrees, or a scaled coverage, or both."""
     rate = math.sqrt(space.smallest)
     if angle is None:
         assert distance is not None

@@ -81,7 +81,7 @@ class Piece(ABC):
         """Return fields of samples at parameters (k, 2), in cells with the rows `rows` (k, 8)."""
 
     def solid_angle(self, density: float) -> float | None:
-        """Return the solid angle of the part of the Gaussian image that a lattice resolves.
+        """Return the solid angle of the Gaussian image, as far as a lattice can sample it.
 
         `density` is the number of normals of the lattice per steradian.
 

@@ -166,7 +166,7 @@ class Space:
         return np.bincount(self.first.pieces, weights, len(self.pieces)).astype(np.float64)
 
     def solid_angles(self, density: float) -> Array:
-        """Return the solid angles (P,) of the parts of Gaussian images that a lattice resolves.
+        """Return the solid angles (P,) of the Gaussian images, as far as a lattice can sample them.
 
         `density` is the number of normals of the lattice per steradian.
         """
@@ -233,7 +233,7 @@ class Space:
         return self._with(target=self.target._replace(floor=floor, ceiling=ceiling))
 
     def graded(self, count: int) -> Self:
-        """Return the same space with sizes that grow slowly, for a number of samples.
+        """Return the same space with slowly growing sizes, for a cover with `count` samples.
 
         Without the slow growth, the spacing of few samples may halve from one sample to the next
         near a narrow bend.

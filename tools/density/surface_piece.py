@@ -80,7 +80,7 @@ class SurfacePiece(Piece):
         return self.geometry.at_parameters(uv, rows[:, 3:6], rows[:, 7], fields, dtype)
 
     def solid_angle(self, density: float) -> float:
-        """Return the solid angle of the part of the Gaussian image that a lattice resolves."""
+        """Return the solid angle of the Gaussian image, as far as a lattice can sample it."""
         return self.geometry.cell_measure.curved_solid_angle(density)
 
     @property
