@@ -36,7 +36,7 @@ def patch_of_jet(jets, k, size, du, dv):
 def is_regular(patch, L, K):
     """Return whether a patch is regular at its point u = v = 0.
 
-    The normal there has the length L, and the Gaussian curvature is K.
+    At this point, L is the length of the normal, and K the Gaussian curvature.
     """
     largest = max(dot(patch.d, patch.d), dot(patch.e, patch.e))
     return VANISHING * largest < L and abs(K) < math.inf

@@ -25,7 +25,8 @@ from ...domain.kernels.patch_numbers import place_of
 from ...machine_code.jit import inline, jit, loop
 
 THIRD = 1.0 / 3.0
-# The indices of neighbours in NEIGHBOURS; typed, as Numba compiles for each literal separately.
+# The indices of neighbours in NEIGHBOURS. They are typed, since Numba would compile functions for
+# each literal separately.
 SOUTHWEST, SOUTH, SOUTHEAST, WEST, EAST, NORTH = (np.int64(k) for k in (0, 1, 2, 3, 5, 7))
 
 
@@ -49,9 +50,9 @@ def neighbour(mu, i, j, turn, k, centre, scale):
 
 @loop
 def patch_vectors(mu, i, j, turn, scale) -> Patch:
-    """Return the vectors of the patch `turn` of the coefficient (i, j), times SCALE * scale.
+    """Return the vectors of a patch, times SCALE * scale; p₀ is relative to its coefficient.
 
-    The vector p₀ is relative to the coefficient.
+    The coefficient (i, j) is that of the cell of the patch; `turn` is the number of quarter turns.
     """
     centre = vector_at(mu, i, j)
     return triangle(

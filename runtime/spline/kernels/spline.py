@@ -77,7 +77,7 @@ def fit_vertices(values, coefficients):
 
 @inline
 def coefficient_near(mu, i, j, turn, k):
-    """Return neighbour k of the coefficient (i, j), after `turn` quarter turns."""
+    """Return the coefficient at the position NEIGHBOURS[turn, k] relative to (i, j)."""
     return vector_at(mu, i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1])
 
 
@@ -159,7 +159,7 @@ def set_combination(jets, k, row, v, w, a, b):
 
 @inline
 def set_second(jets, k, row, patch, uu, uv, vv, size):
-    """Write a second derivative: (uu a + uv b + vv c) / `size`, with a, b, c of a patch."""
+    """Write (uu a + uv b + vv c) / `size` into a 2-jet; a, b, c are vectors of a patch."""
     set_combination(jets, k, row, patch.a, patch.c, uu / size, vv / size)
     jets[k, row, 0] += uv / size * patch.b.x
     jets[k, row, 1] += uv / size * patch.b.y
@@ -209,10 +209,10 @@ def patches_at(rows, columns, cells, patches, places):
 
 @jit
 def mark_left(uv, patches, frame, columns, near, left):
-    """Write whether parameters (k, 2) are outside their patches (k,), or near their sides.
+    """Write to `left` whether parameters `uv` (k, 2) are outside their patches (k,) or near a side.
 
-    They are near a side within the distance `near`, in units of cells.
-    A step of one cell along both axes changes u and v in a triangle by two.
+    Parameters count as near a side if a step of at most `near` cells along each axis may lead out
+    of the patch: such a step changes u and v of a triangle by at most 2 `near`.
     """
     u0, v0, du, dv = frame
     for k in range(patches.size):
@@ -223,7 +223,7 @@ def mark_left(uv, patches, frame, columns, near, left):
 
 @jit
 def measure_patches(mu, scale, first, last, areas, solid_angles):
-    """Write area (scaled) and signed solid angle of the patches [first, last)."""
+    """Write areas, times scale², and signed solid angles of the patches [first, last)."""
     columns = mu.shape[1] - 2
     for number in range(first, last):
         i, j, turn = place_of(number, columns)

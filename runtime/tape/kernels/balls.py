@@ -2,7 +2,7 @@
 
 A coefficient is enclosed in a ball: a midpoint and a radius. Registers are as in `points`, with the
 ten coefficients 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv; midpoints and radii have registers of
-their own. Boxes are evaluated in tiles of LANES.
+their own. Boxes are evaluated in tiles of LANES boxes, the lanes of a register.
 
 Radii include the rounding errors of all operations; their bounds are derived with the formulas
 (`symbolic/taylor.py`). The functions of the C library are assumed to be accurate to two units in
@@ -24,8 +24,8 @@ from .spline_bounds import write_spline_balls
 # The size of a row of registers, and the offsets of its coefficients.
 BALL = np.int64(10 * LANES)
 U, V, UU, UV, VV, UUU, UUV, UVV, VVV = (np.uint64(k * LANES) for k in range(1, 10))
-# Bounds of the relative rounding errors of radii, which are sums of fewer than 64 terms, and of
-# underflow.
+# Radii are multiplied by INFLATION and increased by TINY: bounds of the relative rounding errors of
+# radii, which are sums of fewer than 64 terms, and of underflow.
 INFLATION = 1.0 + 2.0**-46
 TINY = 1e-290
 
@@ -178,7 +178,7 @@ def inflate(terms, radii, at, count):
 
 @loop
 def write_ranges(code, middles, radii, a, f, ends, count):
-    """Write balls of the Taylor coefficients of a function to the rows from f on.
+    """Write balls of the Taylor coefficients of a function to rows of registers, from f on.
 
     The argument of the function is the register that begins at `a`.
     """

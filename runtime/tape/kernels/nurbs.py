@@ -20,9 +20,11 @@ from ...machine_code.jit import jit, loop
 class Net(NamedTuple):
     """A NURBS surface, as arrays for kernels.
 
-    Points are (m, n, 3), or (m, n, 4) with w x, w y, w z, w; relative to the centre (3,). For u and
-    for v: the degree; the knots; the first and the last knot span in use, whose polynomials are
-    continued beyond them; and the lower bound and the length of the period, 0 for no period.
+    `points` are (m, n, 3), or (m, n, 4) with w x, w y, w z, w; x, y, z are relative to `centre`
+    (3,). `degrees` (2,) are those of u and v. `spans` (2, 2) has a row for u and a row for v: the
+    indices of the first and the last knot span in use; the polynomials of these two are continued
+    beyond them. `periods` (2, 2) likewise: the lower end and the length of the period; the length
+    is 0 if there is no period.
     """
 
     degrees: NDArray[np.int64]
@@ -37,7 +39,8 @@ class Net(NamedTuple):
 class Scratch(NamedTuple):
     """Memory for one call.
 
-    The basis functions of u and v with their derivatives (3, degree + 1), and sums (6, 4).
+    `basis_u` and `basis_v` (3, degree + 1) have rows for the basis functions and their first and
+    second derivatives; `sums` (6, 4) are those of `sum_derivatives`.
     """
 
     basis_u: NDArray[np.float64]
@@ -79,8 +82,8 @@ def span_of(knots, first, last, near, x):
 def basis_functions(knots, degree, span, x, basis):
     """Write the nonzero basis functions, and their first and second derivatives.
 
-    Each step raises the degree by one. The derivatives of one degree are differences of functions
-    of the degree below, each divided by the length of the knots that the function covers.
+    Each step raises the degree by one. The derivatives of functions of one degree are differences
+    of functions of the degree below, each divided by the length of its support.
     """
     basis[0, 0], basis[1, 0], basis[2, 0] = 1.0, 0.0, 0.0
     for j in range(1, degree + 1):

@@ -30,9 +30,10 @@ U, V, UU, UV, VV = (np.uint64(k * LANES) for k in range(1, 6))
 class Tape(NamedTuple):
     """Three functions x, y, z of u and v, as a list of operations on results of earlier operations.
 
-    A row of operations (k, 4) int64 is a code of `generated.elementary`, the rows of two arguments,
-    and a number that only splines use. Numbers (k, 2) are constants with bounds of their errors.
-    Outputs (3,) int64 are the rows of x, y and z. The operation SPLINE evaluates `spline`.
+    A row of `operations` (k, 4) is a code of `generated.elementary`, the rows of the two arguments
+    of the operation, and a number that only splines use. A row of `numbers` (k, 2) is the constant
+    of the operation and a bound of the error of this constant. `outputs` (3,) are the rows of x, y
+    and z. The operation SPLINE evaluates `spline`.
     """
 
     operations: NDArray[np.int64]
@@ -137,8 +138,8 @@ def multiply(registers, a, b, at, count):
 def compose(registers, a, at, count):
     """Apply a function to the register at `a`, and write the result to the register at `at`.
 
-    Before the call, the result has in its slots of 1, u and v the value of the function and its
-    Taylor coefficients f1 and f2, at the value of the first register.
+    Before the call, the slots of 1, u and v of the register at `at` must hold the value of the
+    function and its Taylor coefficients f1 and f2 at the value of the register at `a`.
     """
     for k in range(count):
         x = taylor_at(registers, a, k)
@@ -176,7 +177,7 @@ def write_sines(registers, a, at, count):
 
 @loop
 def write_cofunction(code, registers, at, count):
-    """Write value, f1 and f2 of cos (or cosh) to the register after the one of sin (or sinh)."""
+    """Write value, f1 and f2 of cos (or cosh) to the register that follows sin (or sinh)."""
     for k in range(count):
         i, j = np.uint64(at + k), np.uint64(at + POINT + k)
         sine, cosine = registers[i], registers[i + U]

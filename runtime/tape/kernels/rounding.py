@@ -66,8 +66,8 @@ def of_sum(code, factor, distance, middles, radii, errors, a, b, at, count):
             else:
                 largest = size_at(middles, radii, x) + errors[x]
                 error = abs(factor) * errors[x] + distance * largest + UNIT * size
-            # UNIT * size bounds the rounding of the exact result: the computed one is hardly
-            # larger.
+            # UNIT * size bounds the rounding error of a result of the absolute value `size`. The
+            # computed result is hardly larger than `size`.
             errors[z] = error * INFLATION + TINY
 
 

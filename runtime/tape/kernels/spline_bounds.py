@@ -30,7 +30,7 @@ SLACK = 8.0 * UNIT
 
 @loop
 def shift_polynomial(d, at, p, q, s, t):
-    """Expand a polynomial at s, t; its coefficients in d, from `at` on, are overwritten."""
+    """Expand a polynomial at s, t, in place: its coefficients are `d`, from the index `at` on."""
     for a in range(p + 1):
         row = at + a * (q + 1)
         for k in range(q):
@@ -46,8 +46,8 @@ def shift_polynomial(d, at, p, q, s, t):
 def spans_of(breaks, low_end, period, low, high):
     """Return the first and the last span that an interval intersects, and a number of periods.
 
-    The number is that of whole periods by which the lower end of the interval is outside the first
-    period. Indices of spans continue into the next period.
+    The lower end of the interval is outside the first period by this number of whole periods.
+    Indices of spans continue into the next period.
     """
     slack = SLACK * (abs(breaks[0]) + abs(breaks[-1]))
     last = len(breaks) - 2
@@ -107,8 +107,9 @@ def least_smooth(smooth, first, last):
 def expand(spline, i, j, c, s, t, middles, radii, at):
     """Expand a polynomial at s, t.
 
-    From `at` on, `middles` receive its coefficients and those of its absolute values at |s|, |t|;
-    `radii` receive the effect of the errors of its coefficients.
+    From `at` on, `middles` receives the coefficients of the expansion, and those of the expansion
+    at |s|, |t| of the polynomial with the absolute values of the coefficients; `radii` receives
+    bounds of the errors of the expansion that result from the errors of the coefficients.
     """
     table, errors = spline.coefficients, spline.errors
     p, q = table.shape[2] - 1, table.shape[3] - 1
@@ -125,7 +126,11 @@ def expand(spline, i, j, c, s, t, middles, radii, at):
 
 @loop
 def include_balls(spline, i, j, c, s, t, half_s, half_t, terms, middles, radii, at, scratch):
-    """Extend the least and the largest coefficients in u, v by the coefficients on spans i, j."""
+    """Extend the ranges of Taylor coefficients so that they hold the coefficients on spans i, j.
+
+    The least and the largest coefficients, by u and v, are in `middles` and `radii`, in the lane at
+    `at`.
+    """
     p, q = spline.coefficients.shape[2] - 1, spline.coefficients.shape[3] - 1
     along_u, along_v = spline.frames_u[i, 1], spline.frames_v[j, 1]
     rounding = (2.0 * (p + q) + 2.0) * UNIT
