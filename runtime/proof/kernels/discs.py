@@ -34,21 +34,27 @@ LONG = 0.25
 
 
 class Disc(NamedTuple):
-    """The disc around a pole.
+    """The disc around a pole. (q1, q2) = UNIT · (s, t) are coordinates of the tangent plane.
 
-    hot (1, 15): the vectors a, b, c, d, e of the patch that osculates at the pole, by s and t.
-    changes (m, 3, 3): bounds of x_ss, x_st, x_tt minus a, b, c, within the distance to which bounds
-    hold, within half of it, …
-    frame (14): two numbers e0, e1: computed derivatives of h by s and t have errors up to e0 + e1
-    size / r; the size, which is the radius of the disc in r; the least u, and the length of the
-    interval of u; the value of the other parameter at the pole; 1 if this parameter grows with r,
-    else −1; the index, 0 or 1, of u among the parameters; the unit of s and t in the plane; the
-    radius in s and t to which bounds hold; the largest lengths of r ∇u and ∇r, where ∇ is the
-    gradient by the coordinates of the plane; 1 if the tape is that of (x − p) / r, else 0; and 1
-    if angles in the plane grow with u, else −1.
-    basis (3, 3): derivatives of x by the coordinates of the plane and by h.
-    directions (k, 2): for equal steps of u, the angle of x_r (u, 0) in the plane, with the sign
-    with which it grows with u, and the length of x_r (u, 0) in the plane.
+    hot (1, 15): the vectors a, b, c, d, e, with respect to s and t, of the patch that osculates
+    the surface at the pole.
+    changes (m, 3, 3): item k has bounds of the coordinates of x_ss − a, x_st − b and x_tt − c for
+    r ≤ ρ/2ᵏ, where ρ is the largest r at which bounds hold.
+    frame (14,), by index:
+        FAR_NOISE, NEAR_NOISE: derivatives of h with respect to s and t have errors of at
+            most FAR_NOISE + NEAR_NOISE · SIZE / r.
+        SIZE: the radius of the disc, in r.
+        START, TURN: the lower end and the length of the interval of u.
+        END, INWARD: the other parameter is END + INWARD · r, where INWARD is 1 or −1.
+        ANGLE: the index of u among the parameters of the surface, 0 or 1.
+        UNIT: the length of the unit of s and t in the plane.
+        WHOLE: bounds hold for s² + t² ≤ WHOLE².
+        BY_U, BY_R: the largest lengths of r ∇u and ∇r; ∇ is the gradient with respect to q1, q2.
+        QUOTIENT: 1 if the tape computes (x − p) / r, 0 if it computes x.
+        SENSE: 1 if the angle in the plane increases with u, −1 if it decreases.
+    basis (3, 3): the rows are the derivatives of x with respect to q1, q2 and h.
+    directions (k, 2): SENSE times the angle of x_r (u, 0) in the plane, and the length of
+    x_r (u, 0), for k equally spaced u from START to START + TURN.
     """
 
     hot: NDArray[np.float64]

@@ -50,8 +50,9 @@ def longest_steps(third, first, limits, along, least, most, steps):
 def shared_steps(forms, swapped, limits, share, shortest, longest, along_u, along_v):
     """Write the steps along u (k,) and v (l,) for limits of the squared diagonals of cells.
 
-    At first, steps along u are a share of the longest that the limits allow. Then steps along v,
-    and at last steps along u, are as long as possible.
+    The steps along u are first set to `share` times the longest ones that the limits allow. With
+    these, the steps along v are made as long as the limits allow; then the steps along u are made
+    as long as the limits allow with these steps along v.
 
     `forms` are the third and the first fundamental form (3, k, l), the maxima (k,) of e and of E
     along v, and the width of the domain; `swapped` are the same with u and v exchanged. Steps are
