@@ -115,6 +115,21 @@ def test_faces_and_trimmed_surfaces_have_tips() -> None:
         assert components.tolist() == [gm.Component.REGULAR, gm.Component.TIP][: 1 + tips]
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("slit", "step", "tips"),
+    [(4e-7, 0.0, 8), (3e-6, 0.0, 0), (0.0, 1e-6, 8), (0.0, 1e-5, 0)],
+)
+def test_faces_that_nearly_meet_have_one_tip(slit: float, step: float, tips: int) -> None:
+    """Their rays differ by at most 1e-6, and their points by at most 1e-6 of the size."""
+    other = lemon("round", False, (f"pi + {slit}", "2*pi"))
+    matrix = np.eye(4)
+    matrix[2, 3] = step
+    faces = [lemon("round", False, ("0", "pi")), other.transformed(matrix)]
+    points = gm.GaussMap(gm.Part(faces, tolerance=1e-4)).points(directions()[:50])
+    assert (np.asarray(points.component) == gm.Component.TIP).sum() == tips
+
+
 @pytest.mark.parametrize("name", ["round", "star"])
 def test_normals_beside_those_of_a_tip(name: str) -> None:
     """They are nearer to its cone than that through some rays: π²/2048² / 2 is 1.2e-6."""
