@@ -149,7 +149,7 @@ class Reach:
         axes = rows[rows[:, :3].any(axis=1)]
         found = cls(
             from_edges=max((x for x in lengths if x > 0.0), default=None),
-            clearance=max((-x for x in lengths if x < 0.0), default=None),
+            clearance=max((-x or math.inf for x in lengths if x <= 0.0), default=None),
         )
         caps, along = axes[axes[:, 3] != FREE], axes[axes[:, 3] == FREE]
         found._along = unit_vector(along[0, :3], "the axis of reach") if len(along) else None
@@ -162,12 +162,13 @@ class Reach:
 
         These are the unit vector of the axis and the angle of each cap, then 0, 0, 0 and the
         distance from edges, then the axis of unobstructed rays and `FREE`, then 0, 0, 0 and the
-        clearance, as a negative number.
+        clearance, as a negative number; 0 if it is infinite, since JSON has no infinity.
         """
         numbers = [x for cap in self._caps for x in (*cap.axis.tolist(), cap.angle)]
         away = () if self._from_edges is None else (0.0, 0.0, 0.0, self._from_edges)
         free = () if self._along is None else (*self._along.tolist(), FREE)
-        clear = () if self._clearance is None else (0.0, 0.0, 0.0, -self._clearance)
+        length = 0.0 if self._clearance == math.inf else -(self._clearance or 0.0)
+        clear = () if self._clearance is None else (0.0, 0.0, 0.0, length)
         return *numbers, *away, *free, *clear
 
     @property

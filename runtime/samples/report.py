@@ -169,7 +169,7 @@ class SamplingReport:
         With ``reach=(axis, angle)``: the unit vector of the axis, and the angle in degrees. For a
         `Reach`, four numbers for each of its conditions: the axis and the angle of each cap; then
         0, 0, 0 and the distance from edges; then the axis and −1 for unobstructed rays; then
-        0, 0, 0 and the clearance, with a minus sign.
+        0, 0, 0 and the clearance with a minus sign, or 0 if it is infinite.
         `Samples.coverage`, `normal_deviation` and `weights` refer to the points in reach.
     edge_error : float or None
         With ``from_edges``: the largest error of the arcs that approximate edges, in L. The error

@@ -71,7 +71,9 @@ def test_points_with_clearance(monkeypatch, whole):
     share[share] = least_distance(points[share], normals[share]) > 0.35
     expected = 0.35 * (2.0 * np.pi) ** 2 * (area * share).mean()
     np.testing.assert_allclose(samples.weights().sum(), expected, rtol=0.05)
-    assert gm.Reach._of(gm.Reach(clearance=np.inf)._numbers)._clearance == np.inf
+    numbers = gm.Reach(clearance=np.inf)._numbers
+    assert np.isfinite(numbers).all()
+    assert gm.Reach._of(numbers)._clearance == np.inf
 
 
 @pytest.mark.slow
