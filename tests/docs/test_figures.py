@@ -164,7 +164,7 @@ def test_the_points_that_normals_have(captions):
         counts.append(np.count_nonzero(steps))
         sums.append(-np.sign(steps).sum())  # κ > 0 where n·x has a maximum
     assert sums == [1] * curve_figures.NORMALS
-    numbers = re.search(r"the (\d+) normals (\d+) belong to 1 and (\d+) belong to 3", captions[4])
+    numbers = re.search(r"the (\d+) normals (\d+) have 1 and (\d+) have 3", captions[4])
     expected = [len(counts), counts.count(1), counts.count(3)]
     assert [int(x) for x in numbers.groups()] == expected
     changes = np.count_nonzero(

@@ -36,8 +36,8 @@ LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
 DISPLACEMENTS = (1e-6, 1e-3)
 # Free points keep this distance from open sides.
 INSIDE = 5e-10
-# The height, relative to the side, by which sides of a rectangle are curved outwards, so that their
-# points become extreme.
+# The height, relative to the shorter side, by which sides of a rectangle are curved outwards: so
+# their points become extreme. Triangles at more curved sides would be turned over on the rectangle.
 BULGE = 0.05
 # A domain that is periodic in both parameters is continued beyond its sides: in the first attempts
 # by these numbers of mean distances of points, then by these fractions of a period.
@@ -73,7 +73,7 @@ def triangulations(
             elif closing:
                 yield _on_sphere(moved, boundary, lengths, closing[0])
             else:
-                curved = np.where(is_free[:, None], moved, _curved(moved))
+                curved = np.where(is_free[:, None], moved, _curved(moved, lengths))
                 triangles = delaunay(curved * lengths)
                 yield triangles, np.ones_like(triangles)
 
@@ -94,9 +94,12 @@ def _attempts(has_copies: bool, distance: float) -> list[tuple[float, float]]:
 # --- open rectangles ------------------------------------------------------------------------------
 
 
-def _curved(positions: Array) -> Array:
-    """Return positions on the sides of the unit square, moved outwards by a parabola."""
-    heights = 4.0 * BULGE * positions * (1.0 - positions)
+def _curved(positions: Array, lengths: Array) -> Array:
+    """Return positions on the sides of the unit square, moved outwards by a parabola.
+
+    In the plane, where u and v are multiplied by `lengths` (2,), all sides have equal heights.
+    """
+    heights = 4.0 * BULGE * positions * (1.0 - positions) * (lengths.min() / lengths)[::-1]
     outwards = np.where(positions == 0.0, -1.0, np.where(positions == 1.0, 1.0, 0.0))
     return positions + outwards * heights[:, ::-1]
 

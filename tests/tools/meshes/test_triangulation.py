@@ -37,3 +37,22 @@ def test_edges_of_one_two_and_three_triangles():
     adjacent, is_closed = neighbours(third, np.ones(6, dtype=bool))
     assert not is_closed
     np.testing.assert_array_equal(adjacent[:2], [[-1, -1, -1], [2, -1, -1]])
+
+
+@pytest.mark.parametrize("length", [0.05, 1.0, 12.0])
+def test_no_triangle_of_a_long_rectangle_is_turned_over(length: float):
+    rng, step = np.random.default_rng(1), np.sqrt(length / 12_000)
+    (u, zero_u), (v, zero_v) = (
+        (np.arange(n) / n, np.zeros(n)) for n in (int(length / step), int(1.0 / step))
+    )
+    sides = [(u, zero_u), (zero_v + 1.0, v), (1.0 - u, zero_u + 1.0), (zero_v, 1.0 - v)]
+    away = 0.3 * step / np.array([length, 1.0])
+    inner = away + (1.0 - 2.0 * away) * rng.random((12_000, 2))
+    positions = np.concatenate([inner, *(np.column_stack(x) for x in sides)])
+    is_free, lengths = np.arange(len(positions)) < len(inner), np.array([length, 1.0])
+    boundary: Any = (("open", "open"), ("open", "open"))
+    triangles, _ = next(triangulation.triangulations(positions, is_free, boundary, lengths))
+    a, b, c = np.moveaxis(positions[triangles], 1, 0)
+    areas = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    assert (areas >= 0.0).all()
+    assert areas.sum() == pytest.approx(2.0, rel=1e-12)
