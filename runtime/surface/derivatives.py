@@ -138,8 +138,9 @@ def _bounds(interval: Interval, ends: BoundaryPair) -> Interval:
 def normals_of_jets(jets: Array) -> Array:
     """Return the unit normals (k, 3) of 2-jets (k, 6, 3); 0 at singular points."""
     tangents = scale_to_one(float(np.abs(jets[:, 1:3]).max(initial=0.0))) * jets[:, 1:3]
-    normals = np.cross(tangents[:, 0], tangents[:, 1])
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    with np.errstate(invalid="ignore"):  # jets outside of a trim may be NaN or infinite
+        normals = np.cross(tangents[:, 0], tangents[:, 1])
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
 
 

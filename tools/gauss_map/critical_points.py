@@ -51,7 +51,8 @@ def critical_zeros(grid: SignGrid, size: float) -> CriticalZeros:
     moving = np.arange(len(places))
     for constant in (CONSTANT_BY_NODES, *[CONSTANT] * NEWTON_STEPS):
         _, gradient, hessian = curvature.derivatives(places[moving])
-        step = np.clip(_newton_step(gradient, hessian, constant), -cell, cell)
+        # Steps are 0 where K is not known: these places are not found below.
+        step = np.nan_to_num(np.clip(_newton_step(gradient, hessian, constant), -cell, cell))
         places[moving] = np.clip(places[moving] - extent * step, low, high)
         far = (np.abs(places[moving] - starts[moving]) > FARTHEST * grid.cell).any(axis=1)
         moving = moving[~far & (np.abs(step) > ARRIVED).any(axis=1)]

@@ -94,5 +94,6 @@ def _zeros_between(grid: SignGrid, low: Indices, high: Indices) -> Array:
     none, one = np.zeros(len(low)), np.ones(len(low))
     tolerances = {"xatol": ACCURACY, "xrtol": 0.0, "fatol": 0.0, "frtol": 0.0}
     share = find_root(K, (none, one), args=(np.arange(len(low)),), tolerances=tolerances).x[:, None]
+    share = np.nan_to_num(share, nan=0.5)  # K is not known all along the side of the cell
     inner = np.where(share < AT_NODE, start, start + share * (end - start))
     return np.where(share > 1.0 - AT_NODE, end, inner)

@@ -134,6 +134,29 @@ def test_folds_and_borders_end_at_a_trim():
     np.testing.assert_allclose(np.abs(border.uv - 2.5).max(axis=1), 1.5)
 
 
+def test_folds_of_a_surface_that_is_nan_outside_of_its_trim():
+    """The curves K = 0 run into places where the surface, or its differences, are NaN."""
+    texts = ("u", "v", "2*u**2*v/5 - v**3/10 + u*v/5 + log(4/5 - u**2 - v**2)/10")
+    formula = gm.Surface.from_sympy(texts, ("u", "v"), ((-1, 1), (-1, 1)))
+    points = gm.Surface.from_callable(
+        lambda u, v: np.stack([
+            u, v, 0.4 * u * u * v - 0.1 * v**3 + 0.2 * u * v + 0.1 * np.log(0.8 - u * u - v * v)
+        ], axis=-1),
+        formula.domain,
+    )  # fmt: skip
+    disc = 0.7 * gm.directions.circle(60)
+    found = [gm.GaussMap(x.trimmed([disc])).folds() for x in (formula, points)]
+    for folds in found:
+        assert sorted(len(x.cusps) for x in folds) == [0, 1]
+        for fold in folds:
+            assert (np.linalg.norm(fold.uv, axis=1) <= 0.7).all()
+    for a, b in zip(*found, strict=True):
+        np.testing.assert_allclose(a.uv[a.cusps], b.uv[b.cusps], atol=1e-6)
+    jets = np.concatenate([formula.jets(*x.uv.T.copy()) for x in found[0]])
+    uu, uv, vv = jets[:, 3:, 2].T
+    assert (np.abs(uu * vv - uv * uv) < 1e-9).all()
+
+
 def test_splines_have_folds_on_edges_of_patches():
     spline = gm.fit("torus", (16, 16))
     folds = gm.GaussMap(spline).folds()
