@@ -46,7 +46,7 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
 
 
 def _check_folds(samples: Samples, mesh: Triangulated) -> None:
-    """Raise InputError for a trimmed offset, and for an offset that turned samples or edges around.
+    """Raise InputError for offsets that are trimmed or folded, and for those of one-sided surfaces.
 
     An offset by d changes a principal curvature κ to κ' = κ / (1 + d κ). Therefore 1 + d κ has the
     sign of 1 − d κ' = 1 / (1 + d κ), which is known after the offset.
@@ -57,6 +57,11 @@ def _check_folds(samples: Samples, mesh: Triangulated) -> None:
     if base.trimmed:
         raise InputError(
             f"{samples.report.surface!r} has no mesh: its sheets end where they meet each other."
+        )
+    if any(kinds[0] == "mirrored" for kinds in mesh.boundary):
+        raise InputError(
+            f"{samples.report.surface!r} has no mesh: the surface has one side, and its offset "
+            "jumps where the normals change to the opposite ones."
         )
     turned = np.zeros(len(mesh.points), dtype=np.bool_)
     before = mesh.points - base.distance * mesh.normals

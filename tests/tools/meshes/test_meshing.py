@@ -613,7 +613,7 @@ def samples_on(surface: gm.Surface, **options: Any) -> gm.Samples:
 
 @compiled
 class TestOffsets:
-    @covering(prefer=PREFER, name=["torus", "sphere", "graph", "moebius", "dome"])
+    @covering(prefer=PREFER, name=["torus", "sphere", "graph", "dome"])
     def test_an_offset_has_the_topology_of_the_surface(self, name, prefer):
         _, characteristic, borders = surfaces[name]
         fields = ("points", "normals", "uv")

@@ -215,6 +215,8 @@ def test_trimmed_by_brute_force() -> None:
     assert (distances[kept] >= 1.0 - 1e-3).all()
     assert (distances[~kept] < 1.0 + 1e-4).all()  # fine points are up to 3e-3 apart
     refused("by 1, trimmed' has no mesh", moved.mesh)
+    band = gm.sample("moebius_band", 300).offset(0.05)
+    refused("has no mesh: the surface has one side", band.mesh)
 
 
 @pytest.mark.slow
