@@ -84,6 +84,23 @@ CONTOUR = Formula.build(
     outputs=[("N", Cross(d, e)), ("f", Dot(N, w)), ("f_u", Dot(N_u, w)), ("f_v", Dot(N_v, w))],
 )
 
+U, V = scalar("U"), scalar("V")
+
+BEND = Formula.build(
+    "bend",
+    "The second fundamental form $k$ of a tangent vector $w = U x_u + V x_v$ of a surface, times "
+    "the length of the normal $N$, from its 2-jet. Positive where the surface bends along $w$ "
+    "towards $N$.",
+    inputs=[*VECTORS, w],
+    terms=[
+        *NORMAL_AND_SECOND_FORM,
+        ("r", 1 / Dot(N, N)),
+        ("U", Dot(Cross(w, e), N) * r),
+        ("V", Dot(Cross(d, w), N) * r),
+    ],
+    outputs=[("k", A * U**2 + 2 * B * U * V + C * V**2)],
+)
+
 
 # --- poles ----------------------------------------------------------------------------------------
 #
@@ -247,6 +264,7 @@ FORMULAS = (
     FORMS_AT_JET,
     NEWTON,
     CONTOUR,
+    BEND,
     POLAR_CHART,
     AT_POLE,
     GRAPH_SLOPES,

@@ -423,8 +423,8 @@ def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
     by : Mesh, optional
         A mesh of the surface, against which rays are tested. By default a mesh of 10,000 samples is
         made, which takes most of the time: for many views, make one mesh and pass it.
-        The result may be wrong next to cusps of the outline, where a ray passes the surface at less
-        than about the distance between mesh and surface.
+        The result may be wrong next to cusps and junctions of the outline, where a ray passes the
+        surface at less than about the distance between mesh and surface.
 
     Returns
     -------
@@ -436,7 +436,7 @@ def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
     InputError
         For an object that is no mesh, and as `mesh`.
     MissingFieldError
-        Unless the samples have the fields points and normals.
+        Unless the samples have the fields points, normals and uv.
 
     See Also
     --------
@@ -453,6 +453,7 @@ def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
     (True, True)
 
     """
+    from .gauss_map.silhouette import bends
     from .meshes.mesh import Mesh
     from .meshes.rays import visible as are_seen
     from .sampling.sample import sample
@@ -468,4 +469,4 @@ def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
     assert self.eye is not None
     size = np.ptp(by.vertices, axis=0).sum()
     to_eye = -self.eye.rays(points) * (2.0 * size if self.eye.far else 1.0)
-    return are_seen(points, normals, to_eye, by)
+    return are_seen(points, normals, to_eye, bends(self), by)

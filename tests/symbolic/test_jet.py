@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 import sympy as sp
 from gaussmap.symbolic import Formula
-from gaussmap.symbolic.jet import AT_JET, AT_POLE, CONTOUR, NEWTON, POLAR_CHART
+from gaussmap.symbolic.jet import AT_JET, AT_POLE, BEND, CONTOUR, NEWTON, POLAR_CHART
 from gaussmap.symbolic.notation import Cross, Det, Dot, derivative, scalar, substitute
 from gaussmap.symbolic.notation import vectors as vector_symbols
 
@@ -69,6 +69,17 @@ def test_the_contour_is_where_the_normal_is_perpendicular():
         assert sp.expand(found[name] - wanted) == 0
     for name, wanted in zip("xyz", N, strict=True):
         assert sp.expand(found[f"N_{name}"] - wanted) == 0
+
+
+def test_the_second_form_of_a_tangent_vector():
+    """N·x'' on the line through (s, t) along (3, −2) in the parameters."""
+    line = {s: s + 3 * r, t: t - 2 * r}
+    at = {s: sp.Rational(1, 7), t: sp.Rational(-2, 9), r: 0}
+    x = GRAPH.subs(line, simultaneous=True)
+    N = diff(GRAPH, s).cross(diff(GRAPH, t))
+    values = jet(GRAPH, s, t) | vectors(w=diff(x, r).subs(r, 0))
+    found = evaluated(BEND, {key: value.subs(at) for key, value in values.items()})
+    assert found["k"] == N.dot(diff(x, r, r)).subs(at)
 
 
 def test_the_product_rule():

@@ -10,12 +10,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ...generated.jet import contour
+from ...generated.jet import bend, contour
 from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.checks import finite_array, whole_number
 from ...runtime.base.errors import InputError
@@ -194,6 +194,22 @@ def silhouette(
     return Silhouette(
         **chosen, report=report, spline=spline, surface=geometry.surface, polylines=lines, eye=view
     )
+
+
+def bends(outline: Silhouette) -> Array:
+    """Return the second fundamental forms (N,) of the lines of sight, each times a positive factor.
+
+    They are positive where the surface bends towards its normals, and NaN at singular points.
+    """
+    assert outline.eye is not None
+    u, v = outline.uv.astype(np.float64).T.copy()
+    if outline.report.on == "surface":
+        jets = cast("Surface", outline.surface).jets(u, v)
+    else:
+        jets = OnSpline(cast("Spline", outline.spline)).jets(u, v)
+    rays = vector(outline.eye.rays(jets[:, 0]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return python_function(bend)(patch(jets[:, SECOND_JET]), rays)
 
 
 def _places_on_spline(

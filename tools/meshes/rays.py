@@ -111,12 +111,14 @@ def obstacle_from(given: Any) -> Obstacle:  # noqa: ANN401
     raise InputError(f"by must be a part, a Mesh or a trimesh.Trimesh, not {kind}.")
 
 
-def visible(points: Array, normals: Array, to_eye: Array, surface: Mesh) -> Flags:
+def visible(points: Array, normals: Array, to_eye: Array, bends: Array, surface: Mesh) -> Flags:
     """Return a mask (N,) of the points of a silhouette that a mesh of the surface does not hide.
 
-    `to_eye` (N, 3) are vectors to the eye, at least long enough to leave the mesh. Rays begin on
-    both sides of the surface, farther from it than the mesh is. A point is seen if one of its rays
-    is free: the surface around a point does not hide the point.
+    `to_eye` (N, 3) are vectors to the eye, at least long enough to leave the mesh. Rays begin
+    farther from the surface than the mesh is, on the side where the tangents along these vectors
+    are: the surface bends towards the other side, which is that of the normal where `bends` (N,)
+    are positive. At flat points (0 or NaN) they begin on both sides. A point is seen if one of its
+    rays is free.
     """
     solid = Obstacle.of(surface.vertices, surface.triangles)
     points, to_eye = solid.scaled(points), to_eye * solid.scale
@@ -127,10 +129,12 @@ def visible(points: Array, normals: Array, to_eye: Array, surface: Mesh) -> Flag
     both = [solid.hits(points, side * normals, longest, both_sides=True) for side in (1.0, -1.0)]
     nearest = np.min(both, axis=0)
     away = TIMES_AWAY * nearest[np.isfinite(nearest)].max(initial=0.0)
-    sides = (points + side * away * normals for side in (1.0, -1.0))
-    return np.any(
-        [np.isinf(solid.hits(x, along, distance, both_sides=True)) for x in sides], axis=0
-    )
+    seen = np.zeros(len(points), np.bool_)
+    for side in (1.0, -1.0):
+        rows = ~(side * bends > 0.0)
+        begins = points[rows] + side * away * normals[rows]
+        seen[rows] |= np.isinf(solid.hits(begins, along[rows], distance[rows], both_sides=True))
+    return seen
 
 
 def _tree_of(triangles: Array, margin: float) -> Tree:
