@@ -62,7 +62,8 @@ class SupportPoints(NamedTuple):
     errors : (S,) float64 array
         Bounds of the differences from the largest values. They are rounding errors if all points
         with the normals n and −n are proved to be known; in undecided boxes, they include the last
-        step of Newton's method. Without a proof, they follow from the measured distance of the
+        step of Newton's method. On edges of parts, they include the estimated deviations of cubics
+        from the curves of the file. Without a proof, they follow from the measured distance of the
         spline from the surface (`Misfit.distance`); for faces of a part they are then infinite.
     uv : (S, 2) float64 array
         The parameters of the points; NaN on splines of nets.
@@ -134,6 +135,7 @@ def support(self: GaussMap, directions: ArrayLike) -> SupportPoints:
     SupportPoints
         The points, the values n·x, and bounds of their errors. The boundary is that of the trim:
         loops are polygons, and the boundary of a predicate is a polyline through points on it.
+        Faces of parts are bounded by their edges; only where a file has none, by `Face.loops`.
 
     Raises
     ------
@@ -184,8 +186,9 @@ def _farthest(gauss_map: GaussMap, normals: Array) -> SupportPoints:
     found.add(samples.normal_index % count, normals, samples.points, uv, faces)
     report = samples.report
     _add_undecided(found, gauss_map, normals, report.undecided or ())
-    for curves in _curves_of(gauss_map):
-        curves.add(found, normals)
+    for bounds in [x.add(found, normals) for x in _curves_of(gauss_map)]:
+        more = np.flatnonzero(bounds > found.values)
+        found.errors[more] = np.maximum(found.errors[more], bounds[more] - found.values[more])
     if report.estimated_faces:
         found.errors[:] = np.inf
     elif report.proved is None and report.on == "surface":
@@ -228,7 +231,8 @@ class Segments:
     With `bends` (M, 2, 2) the segments are cubic curves; `bends` are their derivatives at both
     ends, less the steps. The tangent of each segment in space is assumed to turn by less than half
     a turn. `face` is the index of the face of a part, and `border` is False for lines inside a
-    surface. The boundary is within `errors` (M,) of the segments in space.
+    surface. The boundary is within `errors` (M,) of the segments in space. Parts of segments
+    outside a `domain` count for bounds only.
     """
 
     surface: HasJets
@@ -238,6 +242,7 @@ class Segments:
     border: bool = True
     errors: Array | float = 0.0
     bends: Array | None = None
+    domain: Domain | None = None
 
     def at(self, rows: Indices, t: Array) -> tuple[Array, Array, Array, Array]:
         """Return u, v (k, 2) and x, dx/dt, d²x/dt² (k, 3) at t (k,) on the segments `rows` (k,)."""
@@ -267,6 +272,7 @@ class NetEdges:
     face = -1
     border = True
     errors = 0.0
+    bends = None
 
     def at(self, rows: Indices, t: Array) -> tuple[Array, Array, Array, Array]:
         """Return NaN for u, v, and x, dx/dt, d²x/dt² (k, 3), at t (k,) on the edges `rows` (k,)."""
@@ -282,7 +288,7 @@ class Curves:
     """M segments of one or more surfaces, with the points and tangents (M, 2, 3) at both ends.
 
     A segment is given by the index of its part in `parts` and its row there. Each segment is within
-    a distance `reach` (M,) of its start.
+    a distance `reach` (M,) of its start, and the boundary within `errors` (M,) of the segment.
     """
 
     parts: Sequence[Segments | NetEdges]
@@ -290,6 +296,7 @@ class Curves:
     row: Indices
     points: Array
     tangents: Array
+    errors: Array
     reach: Array
     rounding: float
 
@@ -304,24 +311,34 @@ class Curves:
             for t in (0, 1):
                 at = x.at(rows[k], np.full(len(rows[k]), float(t)))
                 points[part == k, t], tangents[part == k, t] = at[1:3]
+        off = (x.errors + np.zeros(len(y)) for x, y in zip(parts, rows, strict=True))
+        errors = np.concatenate([np.empty(0), *off])
         finite = np.isfinite(points).all(axis=(1, 2)) & np.isfinite(tangents).all(axis=(1, 2))
         part, row, points, tangents = part[finite], row[finite], points[finite], tangents[finite]
+        errors = errors[finite]
         rounding = ROUNDING * np.abs(points).max(initial=0.0)
-        reach = np.linalg.norm(points[:, 1] - points[:, 0], axis=1) + rounding
-        return cls(parts, part, row, points, tangents, reach, rounding)
+        reach = np.linalg.norm(points[:, 1] - points[:, 0], axis=1) + errors + rounding
+        return cls(parts, part, row, points, tangents, errors, reach, rounding)
 
-    def add(self, found: SupportPoints, normals: Array) -> None:
-        """Replace known points by points of segments that are farther in the directions (S, 3)."""
+    def add(self, found: SupportPoints, normals: Array) -> Array:
+        """Replace known points by points of segments that are farther in the directions (S, 3).
+
+        Return upper bounds (S,) of n·x on the boundary where it is farther than known points.
+        """
+        bounds = np.full(len(normals), -np.inf)
         near = self._near(found, normals) if len(self.part) else ()
         pairs = [self._highest(found, normals, some, rows) for some, rows in near]
         if not pairs:
-            return
+            return bounds
         owner, rows, t = map(np.concatenate, zip(*pairs, strict=True))
         order = np.argsort(self.part[rows], kind="stable")
         numbers, firsts = np.unique(self.part[rows[order]], return_index=True)
         for k, some in zip(numbers, np.split(order, firsts[1:]), strict=True):
             part = self.parts[k]
-            _add_highest(part, found, normals, owner[some], self.row[rows[some]], t[some])
+            here = self.row[rows[some]]
+            most = _add_highest(part, found, normals, owner[some], here, t[some])
+            np.maximum.at(bounds, owner[some], most)
+        return bounds
 
     def _near(self, found: SupportPoints, normals: Array) -> Iterator[tuple[Indices, Indices]]:
         """Yield indices of a few directions, and of the segments that may be farthest in them.
@@ -362,6 +379,7 @@ class Curves:
         inside = (slopes[0] > 0.0) & (slopes[1] < 0.0)
         # A concave curve is below its tangents; twice the slopes allow for other curves.
         most = (ends + np.array([2.0, -2.0])[:, None, None] * slopes).min(axis=0)
+        most += self.errors[rows]
         highest = ends.max(axis=0)
         best = np.fmax(highest.max(axis=1), found.values[some])
         owner, peaks = np.nonzero(inside & (most >= best[:, None] + self.rounding / 4.0))
@@ -378,10 +396,12 @@ class Curves:
 def _add_highest(
     part: Segments | NetEdges, found: SupportPoints, normals: Array,
     owner: Indices, rows: Indices, t: Array,
-) -> None:  # fmt: skip
+) -> Array:  # fmt: skip
     """Replace known points by the highest points of segments if these are farther.
 
-    Segment rows[i] is considered in the direction owner[i]; its highest point is near t[i].
+    Segment rows[i] is considered in the direction owner[i]; its highest point is near t[i]. Return
+    bounds (k,) of n·x on the boundary there. Points outside a domain are replaced by points at the
+    nearest parameters inside.
     """
     n, steps, inside = normals[owner], np.zeros(len(t)), (t > 0.0) & (t < 1.0)
     for _ in range(STEPS):
@@ -397,8 +417,15 @@ def _add_highest(
         t[some], steps[some] = moved, np.abs(slope * step)
     uv, points, _, _ = part.at(rows, t)
     off = part.errors[rows] if isinstance(part.errors, np.ndarray) else part.errors
+    if part.bends is not None:  # the error of a cubic vanishes at its ends, at least as fast
+        off = off * 4.0 * t * (1.0 - t)
+    bounds = np.einsum("kx,kx->k", points, n) + off
+    if isinstance(part, Segments) and part.domain is not None:
+        uv = np.clip(uv, *np.array(part.domain).T)
+        points = part.surface.jets(*uv.T.copy())[:, 0]
     errors = off + np.where(inside, steps, 0.0)
     found.add(owner, normals, points, uv, part.face, part.border, errors)
+    return bounds
 
 
 def _curves_of(gauss_map: GaussMap) -> list[Curves]:

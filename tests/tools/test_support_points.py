@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from ..products import covering
 from ..refusals import refused
+from .cad import made
 
 TURN = (0.0, "2*pi")
 TORUS = gm.surfaces.torus()
@@ -159,6 +160,38 @@ def test_values_of_a_box(parts: Any) -> None:
     assert_allclose(found.values, np.maximum(DIRECTIONS * [1, 2, 3], 0.0).sum(axis=1), atol=1e-14)
     assert found.on_border[:40].all()
     assert found.errors.min() > 3.0 * np.finfo(float).eps  # also for the corner at 0
+
+
+@pytest.mark.parametrize("inside", [False, True])
+def test_errors_on_edges_are_those_of_the_curves_not_of_the_polygons(inside: bool) -> None:
+    """Of a disk with a polygon of 40 sides, in a domain that may end at its vertices."""
+    turn, count = 0.5 * np.pi / 20.0, 40
+    end = np.cos(turn) if inside else 1.0
+    disk = made.face(
+        "plane", u=(-end, end), v=(-end, end), loops=[made.circle(1.0, count, turn)],
+        area=np.pi, wires=[[(0, 0, False)]],
+    )  # fmt: skip
+    rim = made.edge((0,), [made.round_side(1.0, 65, turn)], (0, 0))
+    vertex = np.array([(np.cos(turn), np.sin(turn), 0.0)])
+    part = made.part([disk], edges=[rim], vertices=vertex)
+    found = gm.GaussMap(part).support(DIRECTIONS)
+    away = np.abs(found.values - np.hypot(*DIRECTIONS.T[:2]))
+    assert (away <= found.errors).all()
+    assert (np.abs(found.uv) <= end).all()
+    # A cubic that replaces an arc of angle a deviates by about a⁴ / 384 at most.
+    assert (found.errors.max() < (2.0 * np.pi / 64.0) ** 4 / 100.0) == (not inside)
+    assert found.errors.max() < 2.0 * (1.0 - np.cos(turn))
+    # Some points of the curve are known.
+    known = np.pad(made.round_side(1.0, 65, turn)[0], ((0, 0), (0, 1)))
+    assert inside or gm.GaussMap(part).support(known).errors.max() < 1e-12
+
+
+def test_an_edge_is_as_exact_as_its_better_side() -> None:
+    """The rims of a cylinder are straight on its side, and cubics on its disks."""
+    found = gm.GaussMap(made.CYLINDER).support(DIRECTIONS)
+    exact = np.hypot(*DIRECTIONS.T[:2]) + 2.0 * np.maximum(DIRECTIONS[:, 2], 0.0)
+    assert (np.abs(found.values - exact) <= found.errors).all()
+    assert found.errors.max() < 1e-13
 
 
 def test_functions_without_a_proof_have_larger_errors() -> None:

@@ -185,8 +185,8 @@ class Part(Methods, Whole):
     def bounds(self) -> Array:
         """The smallest and the largest x, y, z (2, 3) of all faces inside their trims, in L.
 
-        They are exact up to rounding and to the polygons that approximate the boundaries of faces
-        (see `Face.loops`). Raises SurfaceError if no face can be used.
+        They are values of `GaussMap.support`, whose `errors` bound their errors. Raises
+        SurfaceError if no face can be used.
 
         Examples
         --------

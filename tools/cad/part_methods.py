@@ -20,12 +20,12 @@ class Methods:
 
     _face_columns = Later("gaussmap.tools.cad.face_columns", "face_columns")
 
-    _boundaries = Later(MEASURES, "boundaries_of")
     _bounds_of = Later("gaussmap.tools.support_points", "bounds_of")
     _made_of = Later(FROM_SURFACES, "part_of_surfaces")
     _gap_of = Later(MEASURES, "gap_of")
     _volume_of = Later(MEASURES, "volume_of")
 
+    _boundaries = Later(REACHED, "with_edges")
     _sampled = Later(SAMPLING, "sample_part")
     _samples_at = Later(SAMPLING, "samples_at")
     _space = Later(REACHED, "reached")

@@ -19,10 +19,11 @@ from ..density.cells import AREA, runs
 from ..density.kernels.sizing import TargetDensity
 from ..edge_distance import AwayFrom
 from ..meshes.rays import Free
-from ..support_points import Segments, lines_of
+from ..support_points import ROUNDING, Segments, lines_of
 from .edges import sides_at
 from .face_pieces import FacePiece
 from .faces import own_parameters
+from .measures import boundaries_of
 from .obstacle import obstacle_of
 from .part import Part
 from .results import PartSpace, space_of
@@ -90,8 +91,28 @@ def borders_of(part: Part) -> list[Segments]:
         error = float(np.max(side.errors))
         if edge not in best or error < best[edge][0]:
             best[edge] = error, side
-    polygons = [x for x in part._boundaries() if not part.faces[x.face].wires]
+    polygons = [x for x in boundaries_of(part) if not part.faces[x.face].wires]
     return [*(x for _, x in best.values()), *polygons]
+
+
+def with_edges(part: Part) -> list[Segments]:
+    """Return the boundary polygons of all faces, and the curves of the sides of all edges.
+
+    Polygons deviate from the curves of the file, to the inside of a face. Of two sides that have
+    the same points, the one with the smaller error is returned.
+    """
+    found = boundaries_of(part)
+    for _, sides in itertools.groupby(_sides(space_of(part, None)), lambda x: x[0]):
+        best, *others = sorted((x for _, x in sides), key=lambda x: np.max(x.errors))
+        found += [best, *(x for x in others if not _same(best, x))]
+    return found
+
+
+def _same(one: Segments, other: Segments) -> bool:
+    """Return whether the points of two sides of an edge are the same, up to rounding."""
+    rows = np.arange(len(one.starts))
+    a, b = (x.at(rows, np.zeros(len(rows)))[1] for x in (one, other))
+    return bool(np.abs(a - b).max() <= ROUNDING * np.abs(a).max())
 
 
 def _sides(space: PartSpace) -> Iterator[tuple[int, Segments]]:
@@ -132,7 +153,8 @@ def _cubics(piece: FacePiece, points: Array) -> Segments:
         errors[1:] = error
         errors[:-1] = np.maximum(errors[:-1], error)
     bends = np.stack([slopes[:-1] - steps, slopes[1:] - steps], axis=1)
-    return Segments(piece, uv[:-1], steps, piece.face.index, True, errors, bends)
+    face = piece.face.index
+    return Segments(piece, uv[:-1], steps, face, True, errors, bends, piece.domain)
 
 
 def weights_of(part: Part, samples: Samples) -> Array:
