@@ -195,8 +195,10 @@ def bend(patch, w):
         B = N·b
         C = N·c
         r = 1/|N|**2
-        U = r*(w × e·N)
-        V = r*(d × w·N)
+        o = e × N
+        m = N × d
+        U = r*(o·w)
+        V = r*(m·w)
         k = A*U**2 + 2*B*U*V + C*V**2
 
     Source: beyond the paper; 69 operations as written, 69 here.
@@ -214,16 +216,14 @@ def bend(patch, w):
     B = N_x * b_x + N_y * b_y + N_z * b_z
     C = N_x * c_x + N_y * c_y + N_z * c_z
     r = 1.0 / (N_x * N_x + N_y * N_y + N_z * N_z)
-    U = r * (
-        N_x * (e_z * w_y - e_y * w_z)
-        + N_y * (e_x * w_z - e_z * w_x)
-        + N_z * (e_y * w_x - e_x * w_y)
-    )
-    V = r * (
-        N_x * (d_y * w_z - d_z * w_y)
-        + N_y * (d_z * w_x - d_x * w_z)
-        + N_z * (d_x * w_y - d_y * w_x)
-    )
+    o_x = N_z * e_y - N_y * e_z
+    o_y = N_x * e_z - N_z * e_x
+    o_z = N_y * e_x - N_x * e_y
+    m_x = N_y * d_z - N_z * d_y
+    m_y = N_z * d_x - N_x * d_z
+    m_z = N_x * d_y - N_y * d_x
+    U = r * (o_x * w_x + o_y * w_y + o_z * w_z)
+    V = r * (m_x * w_x + m_y * w_y + m_z * w_z)
     k = A * U * U + 2 * B * U * V + C * V * V
     return k
 

@@ -84,7 +84,7 @@ CONTOUR = Formula.build(
     outputs=[("N", Cross(d, e)), ("f", Dot(N, w)), ("f_u", Dot(N_u, w)), ("f_v", Dot(N_v, w))],
 )
 
-U, V = scalar("U"), scalar("V")
+(o, m), (U, V) = vectors("om"), (scalar("U"), scalar("V"))
 
 BEND = Formula.build(
     "bend",
@@ -95,8 +95,10 @@ BEND = Formula.build(
     terms=[
         *NORMAL_AND_SECOND_FORM,
         ("r", 1 / Dot(N, N)),
-        ("U", Dot(Cross(w, e), N) * r),
-        ("V", Dot(Cross(d, w), N) * r),
+        ("o", Cross(e, N)),
+        ("m", Cross(N, d)),
+        ("U", Dot(o, w) * r),
+        ("V", Dot(m, w) * r),
     ],
     outputs=[("k", A * U**2 + 2 * B * U * V + C * V**2)],
 )
