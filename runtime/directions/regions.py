@@ -167,9 +167,9 @@ class Reach:
         numbers = [x for cap in self._caps for x in (*cap.axis.tolist(), cap.angle)]
         away = () if self._from_edges is None else (0.0, 0.0, 0.0, self._from_edges)
         free = () if self._along is None else (*self._along.tolist(), FREE)
-        length = 0.0 if self._clearance == math.inf else -(self._clearance or 0.0)
-        clear = () if self._clearance is None else (0.0, 0.0, 0.0, length)
-        return *numbers, *away, *free, *clear
+        if (clear := self._clearance) is None:
+            return *numbers, *away, *free
+        return *numbers, *away, *free, 0.0, 0.0, 0.0, 0.0 if math.isinf(clear) else -clear
 
     @property
     def _rays(self) -> list[tuple[NDArray[np.float64] | None, float]]:

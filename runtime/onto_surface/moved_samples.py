@@ -9,7 +9,7 @@ from ..base.aliases import Array, Flags, Indices
 from ..base.memory import check_memory
 from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of
 from ..samples.report import UndecidedNormal
-from ..search.hits import fill, kinds_of
+from ..search.hits import fill, kinds_of, without_curvature
 from ..search.search import Hits
 from ..spline.spline import Spline
 from ..surface.surface import Surface
@@ -40,7 +40,7 @@ def moved_samples(
         arrays["gaussian_curvature"], arrays["mean_curvature"], states,
     )  # fmt: skip
     refine(surface, spline, target, threads)
-    arrays["gaussian_curvature"][hits.special] *= 0.0
+    arrays = without_curvature(arrays, hits)
     return arrays | kinds_of(hits, ("component",)) | {FLAG_NAMES[0]: states == FOUND}
 
 

@@ -138,7 +138,7 @@ def fill(
         patches, asked = hits.patch_index, normals[hits.normal_index]
         found = fields_in_nets(spline, patches, asked, hits.exact, hits.local, fields, dtype)
         found |= {name: x for name, x in known.items() if name in fields}
-        return _without_curvature(found, hits)
+        return without_curvature(found, hits)
     types = dict.fromkeys(FLOAT_NAMES, dtype) | dict.fromkeys(INDEX_NAMES, np.int64)
     filled = {x: new_field(x, len(hits), types[x], memory) for x in ARRAY_NAMES if x in fields}
     arrays = [filled[x] if x in filled else new_field(x, 0, types[x]) for x in types]
@@ -152,7 +152,7 @@ def fill(
             spline.coefficients, spline.scale, normals, spline.frame,
             hits.exact, hits.keys[hits.exact], hits.local, *arrays[: len(FLOAT_NAMES)],
         )  # fmt: skip
-    return _without_curvature(filled, hits)
+    return without_curvature(filled, hits)
 
 
 def kinds_of(
@@ -167,7 +167,7 @@ def kinds_of(
     return found
 
 
-def _without_curvature(fields: dict[str, NDArray[Any]], hits: Hits) -> dict[str, NDArray[Any]]:
+def without_curvature(fields: dict[str, NDArray[Any]], hits: Hits) -> dict[str, NDArray[Any]]:
     """Return the fields with K = 0, with its sign, for components that are no regular points."""
     if "gaussian_curvature" in fields:
         fields["gaussian_curvature"][hits.special] *= 0.0

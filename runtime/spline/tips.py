@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags
 from ..base.kept import kept
+from ..directions.unit import unit_or_zero
 from .joints import EDGES, merged_points
 from .nets import AnySpline, NetSpline
 from .spline import Spline
@@ -92,9 +93,7 @@ def _of_nets(spline: NetSpline) -> Tips | None:
         return None
     beside = np.array([[x.start, x.start_beside, x.end_beside] for x in EDGES])[edge]
     start, first, second = np.moveaxis(nets[patch[:, None], beside], 1, 0)
-    normals = np.cross(first - start, second - start)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+    normals = unit_or_zero(np.cross(first - start, second - start))
     points, group = merged_points(start)
     firsts = np.unique(group, return_index=True)[1]
     cosines = np.ones(len(points))

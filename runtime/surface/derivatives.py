@@ -22,6 +22,7 @@ from ..base.aliases import Array, Flags, Indices
 from ..base.errors import SurfaceError
 from ..base.evaluation import returned
 from ..base.scales import power_of_two, scale_to_one
+from ..directions.unit import unit_or_zero
 from ..domain.domain import Boundary, BoundaryPair, Domain, Interval, brought_inside, places_in
 from ..tape.kernels.points import Tape
 
@@ -139,9 +140,7 @@ def normals_of_jets(jets: Array) -> Array:
     """Return the unit normals (k, 3) of 2-jets (k, 6, 3); 0 at singular points."""
     tangents = scale_to_one(float(np.abs(jets[:, 1:3]).max(initial=0.0))) * jets[:, 1:3]
     with np.errstate(invalid="ignore"):  # jets outside of a trim may be NaN or infinite
-        normals = np.cross(tangents[:, 0], tangents[:, 1])
-        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+        return unit_or_zero(np.cross(tangents[:, 0], tangents[:, 1]))
 
 
 def moved_inside(u: Array, v: Array, domain: Domain, boundary: Boundary) -> tuple[Array, Array]:

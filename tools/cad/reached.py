@@ -86,13 +86,8 @@ def borders_of(part: Part) -> list[Segments]:
     If an edge has two sides, the curve of the side with the smaller error is taken. Faces without
     wires contribute their boundary polygons.
     """
-    space, best = space_of(part, None), dict[int, tuple[float, Segments]]()
-    for edge, side in _sides(space):
-        error = float(np.max(side.errors))
-        if edge not in best or error < best[edge][0]:
-            best[edge] = error, side
     polygons = [x for x in boundaries_of(part) if not part.faces[x.face].wires]
-    return [*(x for _, x in best.values()), *polygons]
+    return [*(best for best, *_ in _by_edge(part)), *polygons]
 
 
 def with_edges(part: Part) -> list[Segments]:
@@ -102,8 +97,7 @@ def with_edges(part: Part) -> list[Segments]:
     the same points, the one with the smaller error is returned.
     """
     found = boundaries_of(part)
-    for _, sides in itertools.groupby(_sides(space_of(part, None)), lambda x: x[0]):
-        best, *others = sorted((x for _, x in sides), key=lambda x: np.max(x.errors))
+    for best, *others in _by_edge(part):
         found += [best, *(x for x in others if not _same(best, x))]
     return found
 
@@ -113,6 +107,12 @@ def _same(one: Segments, other: Segments) -> bool:
     rows = np.arange(len(one.starts))
     a, b = (x.at(rows, np.zeros(len(rows)))[1] for x in (one, other))
     return bool(np.abs(a - b).max() <= ROUNDING * np.abs(a).max())
+
+
+def _by_edge(part: Part) -> Iterator[list[Segments]]:
+    """Yield the curves of the sides of each edge, the one with the smallest error first."""
+    for _, sides in itertools.groupby(_sides(space_of(part, None)), lambda x: x[0]):
+        yield sorted((x for _, x in sides), key=lambda x: np.max(x.errors))
 
 
 def _sides(space: PartSpace) -> Iterator[tuple[int, Segments]]:
