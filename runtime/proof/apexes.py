@@ -1,10 +1,10 @@
 """Apexes: sides of the domain, and parameter lines inside it, that are collapsed to a point.
 
-On a line u = u₁ that is collapsed to a point, x_v = 0. By the mean value theorem n·x_v(u, v) = (u −
-u₁) n·x_uv(ξ, v) with ξ between u₁ and u, on both sides of the line. So at a point beside the line
-with the normal n, n·x_u = 0, and n·x_uv = 0 at some ξ. If bounds over a box that touches the line
-exclude one of these zeros, or show that all normals are more than 90° from n, the box has no point
-with this normal.
+On a line u = u₁ that is collapsed to a point, x_v = 0. For u on either side of the line, the mean
+value theorem says that n·x_v(u, v) = (u − u₁) n·x_uv(ξ, v) with some ξ between u₁ and u. So at a
+point near the line that has the normal n, n·x_u = 0, and n·x_uv = 0 at some ξ. If bounds over a box
+that touches the line exclude one of these zeros, or show that all normals are more than 90° from n,
+the box has no point with this normal.
 """
 
 from dataclasses import dataclass
@@ -35,10 +35,11 @@ ALONG = 32
 LINES, SHIFT = 32, 0.381966
 # A box counts as beside a line if its distance is at most this, relative to the domain.
 BESIDE = 1e-6
-# If a collapsed side has one normal, a box beside the side has no other point with this normal if
-# two conditions hold: the width of the box is at most SMALL, relative to the domain; the normals at
-# the far side of the box (or at the distance LEAST, if that is farther) differ from the normal of
-# the collapsed side, but by at most WIDE. The normal of the collapsed side has errors up to ONE.
+# Let a collapsed side have one normal. A box that touches the side has no point with this normal
+# outside of the side if two conditions hold: the width of the box is at most SMALL, relative to the
+# domain; the normals at the far side of the box (or at the distance LEAST, if that is farther)
+# differ from the normal of the collapsed side, but by at most WIDE. The normal of the collapsed
+# side has errors up to ONE.
 SMALL, LEAST, WIDE, ONE = 1e-2, 1e-5, 0.5, 4.0 * SMOOTH
 
 

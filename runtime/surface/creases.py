@@ -19,8 +19,8 @@ CREASE_ANGLE = 0.1
 # have no folds; from a ratio of 5 on, they have some.
 LARGEST_JUMP = 3.0
 # x_u or x_v counts as zero at a point of a knot line if |x_u × x_v| is at most SINGULAR times the
-# largest |x_u| times the largest |x_v| on the line. Then the normal is evaluated beside the line,
-# at a distance of BESIDE times the knot span.
+# largest |x_u| times the largest |x_v| on the line. The normal of such a point is evaluated at a
+# distance of BESIDE times the knot span from the line.
 BESIDE, SINGULAR = 1e-4, 1e-9
 
 

@@ -179,8 +179,9 @@ def _on_side(surface: Surface, axis: int, end: int) -> Array:
 def _inside(found: ProvedPlaces, piece: Surface, normals: Array) -> FacePlaces:
     """Move points and undecided boxes from beyond open sides into the domain of a piece.
 
-    The radius of a point grows by the distance that it moved. Points with other normals than the
-    side beside them, and boxes farther outside than `GAP` times the domain, are left out.
+    The radius of a point grows by the distance that it moved. A point is left out if its normal
+    differs from that of the side to which it moved. Boxes are left out if they are farther outside
+    than `GAP` times the domain.
     """
     is_open = np.array(piece.boundary) == "open"
     low, high = np.where(is_open, piece.domain, [-np.inf, np.inf]).T
