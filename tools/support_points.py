@@ -19,7 +19,7 @@ from ..runtime.base.errors import SurfaceError
 from ..runtime.base.kept import kept
 from ..runtime.directions.unit import as_normals
 from ..runtime.domain.domain import Domain, brought_inside
-from ..runtime.domain.trim import Predicate, Trim
+from ..runtime.domain.trim import Trim, polygons_of
 from ..runtime.map import GaussMap, kept_map
 from ..runtime.onto_surface.on_spline import OnPatches, OnSpline, on_grids
 from ..runtime.samples.report import UndecidedNormal
@@ -27,6 +27,7 @@ from ..runtime.samples.whole import Whole
 from ..runtime.search.search import developable_patches
 from ..runtime.spline.joints import EDGES
 from ..runtime.spline.kernels.patch import count_developable
+from ..runtime.spline.missing import Known
 from ..runtime.spline.nets import NetSpline
 from ..runtime.spline.spline import Spline
 from ..runtime.spline.tips import tips_of
@@ -475,14 +476,15 @@ def _of_trim(geometry: OnSpline, line: Array) -> Segments:
     starts = low + (around + line[:-1] - middles) * (high - low)
     found = Segments(geometry, starts, np.diff(line, axis=0) * (high - low))
     parts = () if spline.trim is None else spline.trim.parts
-    if len(starts) < 3 or not any(isinstance(x, Predicate) for x in parts):
+    if len(starts) < 3 or all(polygons_of(x) or isinstance(x, Known) for x in parts):
         return found
     points = found.at(np.arange(len(starts)), np.zeros(len(starts)))[1]
     chords, steps = points[2:] - points[:-2], np.diff(points, axis=0)[:-1]
     squares = np.maximum(np.einsum("kx,kx->k", chords, chords), np.finfo(np.float64).tiny)
     along = np.einsum("kx,kx->k", steps, chords) / squares
     off = np.linalg.norm(steps - along[:, None] * chords, axis=1)
-    return replace(found, errors=np.maximum(*(np.pad(off, x, "edge") for x in ((2, 0), (1, 1)))))
+    off = np.pad(off, (2, 3), "edge")  # at the ends of a segment and of its two neighbours
+    return replace(found, errors=np.lib.stride_tricks.sliding_window_view(off, 4).max(axis=1))
 
 
 def _inside(

@@ -273,6 +273,14 @@ class Turned:
         return self.part.sides(own, normals)
 
 
+def polygons_of(part: TrimPart) -> tuple[Array, ...]:
+    """Return the closed polygons (k, 2) of a condition; none if it is not given by loops."""
+    if isinstance(part, Turned):
+        own = polygons_of(part.part)
+        return tuple(np.stack([part.total - x[:, 0], x[:, 1]], axis=1) for x in own)
+    return part.polygons if isinstance(part, Loops) else ()
+
+
 def trimmed_by(
     trim: Trim | None, loops: object, within: object, domain: Domain, boundary: Boundary,
     name: str, traced: Traced,

@@ -88,6 +88,15 @@ def test_no_place_on_a_grid_is_farther(name: str, on_spline: bool) -> None:
     assert_farthest(gm.fit(surface) if on_spline else surface, 120, name in SHARP)
 
 
+@pytest.mark.parametrize("reverse", [False, True])
+def test_errors_count_where_a_predicate_changes(reverse: bool) -> None:
+    circle = np.array([3.0, 1.0]) + gm.directions.circle(20_000)
+    surface = SURFACES["predicate"]
+    found = gm.GaussMap(surface.flipped() if reverse else surface).support(DIRECTIONS)
+    values = (TORUS.evaluate(*circle.T.copy()) @ DIRECTIONS.T).max(axis=0)
+    assert (found.values + found.errors >= values).all()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SURFACES)
 def test_none_of_a_million_places_is_farther(name: str) -> None:

@@ -13,8 +13,7 @@ from ...runtime.base.checks import listed, positive_number, text
 from ...runtime.base.errors import GaussmapWarning, InputError, SurfaceError, shown
 from ...runtime.base.wording import plural
 from ...runtime.domain.domain import closes
-from ...runtime.domain.loops import Loops
-from ...runtime.domain.trim import Turned
+from ...runtime.domain.trim import polygons_of
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from ..files.lengths import METRES, checked_unit
@@ -90,16 +89,13 @@ def _loops(surface: Surface) -> list[Array]:
     (u0, u1), (v0, v1) = surface.domain
     if surface.trim is None:
         return [np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])]
-    (part, *others), total = surface.trim.parts, u0 + u1
-    turned = isinstance(part, Turned)
-    loops = part.part if isinstance(part, Turned) else part
-    if others or not isinstance(loops, Loops):
+    (part, *others) = surface.trim.parts
+    polygons = polygons_of(part)
+    if others or not polygons:
         raise InputError(
             f"surface {surface.name!r} is trimmed by a predicate, by missing points or twice; a "
             "part takes surfaces that are trimmed by loops once."
         )
-    polygons = [np.stack([total - x[:, 0], x[:, 1]], axis=1) if turned else x
-                for x in loops.polygons]  # fmt: skip
     low, high = np.array(surface.domain).T
     around = np.array([closes(ends) for ends in surface.boundary])
     for x in polygons:

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
-from ...runtime.domain.loops import Loops
-from ...runtime.domain.trim import Turned
+from ...runtime.domain.trim import polygons_of
 from .cells import grouped
 from .piece import Piece
 
@@ -84,6 +83,6 @@ class Trims:
             trim = self.pieces[k].trim
             assert trim is not None
             for part in trim.parts:
-                if not isinstance(part.part if isinstance(part, Turned) else part, Loops):
+                if not polygons_of(part):
                     allowed[rows] &= part.contains(places[rows])
         return allowed

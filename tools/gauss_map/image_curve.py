@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.base.repeats import repeated
+from ...runtime.base.trees import tree_of
 from ...runtime.base.wording import plural
 from ...runtime.domain.domain import brought_inside
 from ...runtime.onto_surface.on_spline import OnSpline
@@ -22,10 +24,11 @@ OfPlaces = Callable[[Array], Array]
 # Curves whose ends are closer than this, relative to their size, count as closed.
 CLOSED = 1e-6
 # The point of a curve whose normal is nearest to a given one is searched in ROUNDS rounds. Each
-# round tests PLACES points: first between the two neighbours of the nearest vertex, then between
+# round tests PLACES points: first one segment to both sides of the nearest one of normals that are
+# at most APART radians apart on the chords of the image, then between
 # the two neighbours of the nearest point of the round before. Angles are measured to the chords
 # between the points of the last round.
-PLACES, ROUNDS = 9, 5
+PLACES, ROUNDS, APART = 9, 5, 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,23 +76,16 @@ class Traced:
     curve: ImageCurve
     of: Curves
 
-    def part(self, first: int, last: int) -> Traced:
-        """Return the part of the curve through vertices [first, last)."""
-        whole, rows = self.curve, slice(first, last)
-        if last - first == len(whole.uv):
-            return self
-        cusps = whole.cusps[(whole.cusps >= first) & (whole.cusps < last)] - first
-        curve = ImageCurve(
-            whole.uv[rows], whole.points[rows], whole.normals[rows], closed=False, cusps=cusps
-        )
-        return replace(self, curve=curve)
-
     def angles(self, normals: Array) -> Array:
         """Return the angles (S,), in radians, from unit normals to the image of the curve."""
-        from scipy.spatial import KDTree
-
-        uv, last = self.curve.uv, len(self.curve.uv) - 1
-        nearest = KDTree(self.curve.normals).query(normals)[1]
+        uv, image, last = self.curve.uv, self.curve.normals, len(self.curve.uv) - 1
+        steps = np.diff(image, axis=0)
+        parts = np.ceil(np.nan_to_num(np.linalg.norm(steps, axis=1)) / APART).astype(np.int64) + 1
+        owner, number = repeated(parts)
+        share = number / parts[owner]
+        chords, places = image[owner] + share[:, None] * steps[owner], owner + share
+        known = np.isfinite(chords).all(axis=1)
+        nearest = places[known][tree_of(chords[known]).query(normals)[1]]
         low, high = np.maximum(nearest - 1.0, 0.0), np.minimum(nearest + 1.0, last)
         image = np.empty((PLACES, len(normals), 3))
         for _ in range(ROUNDS):
@@ -156,10 +152,6 @@ class Zeros(Curves, ABC):
     @abstractmethod
     def polylines(self) -> list[Array]:
         """Return the curves (k, 2) across which K changes its sign."""
-
-    def curves(self, tolerance: float) -> list[Traced]:
-        """Return the curves, traced to a tolerance."""
-        return [self.traced(uv, tolerance) for uv in self.polylines()]
 
     def isolated(self) -> list[tuple[Array, Array]]:
         """Return the points (2,) at which K touches zero, with rectangles (2, 2) around them."""

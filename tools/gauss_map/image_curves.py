@@ -6,30 +6,33 @@ with a normal changes by two; across the image of a boundary, by one.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...runtime.base.aliases import Array
+from ...runtime.base.aliases import Array, Flags
 from ...runtime.base.errors import InputError
 from ...runtime.base.kept import kept
 from ...runtime.directions.unit import as_normals
-from ...runtime.domain.domain import closes
-from ...runtime.domain.loops import Loops
+from ...runtime.domain.trim import Trim, polygons_of
 from ...runtime.map import GaussMap
 from ...runtime.onto_surface.on_spline import OnSpline, on_grids
+from ...runtime.spline.spline import Spline
 from .curvature import Curvature
 from .image_curve import Curves, ImageCurve, Traced, jets_of_spline
-from .parabolic import checked_tolerance, traced_curves
+from .parabolic import checked_tolerance, zeros_of
+from .polylines import dense, inside
 
-# The number of segments of a side of the domain, before refinement.
+# The number of segments of a side of the domain, or of a line as long, before refinement.
 PARTS_OF_SIDE = 16
 # The tolerance of the curves to which angles are measured.
 TOLERANCE = 1e-3
 # Parameter pairs within this distance of a boundary, relative to the domain, count as points of the
 # boundary.
 ON_BORDER = 1e-9
+CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
 
 
 def folds(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve, ...]:
@@ -80,7 +83,8 @@ def border_image(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve
     Returns
     -------
     tuple of ImageCurve
-        The open sides of the domain, and the loops of a trim, where they are boundaries.
+        The open sides of the domain, and the loops of a trim, where they are boundaries. Both sides
+        of a mirrored seam count as open: normals change to the opposite ones there.
 
     Raises
     ------
@@ -151,58 +155,88 @@ def _geometries(gauss_map: GaussMap) -> Sequence[OnSpline]:
 
 def _folds(geometry: OnSpline, tolerance: float) -> Iterator[Traced]:
     """Yield the folds of a geometry inside its trim."""
-    for traced in traced_curves(geometry.surface or geometry.spline, tolerance):
-        for ends in _inside(geometry, traced.curve.uv):
-            yield traced.part(*ends)
+    zeros, trim = zeros_of(geometry.surface or geometry.spline, tolerance), geometry.spline.trim
+    for uv in zeros.polylines():
+        for part in [uv] if trim is None else inside(uv, trim.contains, zeros.onto):
+            yield zeros.traced(part, tolerance)
 
 
 def _borders(geometry: OnSpline, tolerance: float) -> Iterator[Traced]:
-    """Yield the boundaries of a geometry: open sides of the domain, and the loops of a trim."""
+    """Yield the boundaries of a geometry: sides of the domain, and the loops of a trim."""
     curves, surface = Curves(), geometry.surface
     curves.jets = Curvature(surface).jets if surface else jets_of_spline(geometry.spline)
     curves.size = geometry.spline.extent[0]
     for uv in [*_sides(geometry), *_loops(geometry)]:
-        for first, last in _inside(geometry, uv):
-            yield curves.traced(uv[first:last], tolerance)
+        yield curves.traced(uv, tolerance)
 
 
 def _sides(geometry: OnSpline) -> Iterator[Array]:
-    """Yield the open sides of the domain, as polylines (k, 2) of the parameters."""
+    """Yield the sides of the domain that bound it, as polylines (k, 2) of the parameters.
+
+    Both sides of a mirrored seam do: normals change to the opposite ones there.
+    """
     spline = geometry.spline
     for axis, (ends, other) in enumerate(zip(spline.boundary, spline.domain[::-1], strict=True)):
-        along = np.linspace(*other, PARTS_OF_SIDE + 1)
-        for end, value in zip(ends, spline.domain[axis], strict=True):
-            if end == "open":
-                line = np.stack([np.full(len(along), value), along], axis=1)
-                yield line if axis == 0 else line[:, ::-1]
+        along, (low, high) = np.linspace(*other, PARTS_OF_SIDE + 1), spline.domain[axis]
+        for end, value in zip(ends, (low, high), strict=True):
+            if end in ("open", "mirrored"):
+                line, inwards = np.full((len(along), 2), value), np.zeros(2)
+                line[:, 1 - axis] = along
+                inwards[axis] = ON_BORDER * (low + high - 2.0 * value)
+                yield from _inside(spline.trim, line, inwards[None])
 
 
 def _loops(geometry: OnSpline) -> Iterator[Array]:
-    """Yield the loops of the trim; InputError if it has other boundaries."""
-    trim = geometry.spline.trim
-    for part in () if trim is None else trim.parts:
-        if not isinstance(part, Loops):
+    """Yield the loops of the trim inside the domain; InputError if it has other boundaries."""
+    spline, trim = geometry.spline, geometry.spline.trim
+    size = np.diff(spline.domain)[:, 0]
+    if trim is None:
+        return
+    for part in trim.parts:
+        polygons = polygons_of(part)
+        if not polygons:
             raise InputError(
-                f"the border of {geometry.spline.name!r} is not known: its trim is a predicate, or "
+                f"the border of {spline.name!r} is not known: its trim is a predicate, or "
                 "leaves out missing points; trim it by loops."
             )
-        for polygon in part.polygons:
-            yield np.concatenate([polygon, polygon[:1]])
+        others = replace(trim, parts=tuple(x for x in trim.parts if x is not part))
+        for polygon in polygons:
+            line = dense(np.concatenate([polygon, polygon[:1]]), size / PARTS_OF_SIDE)
+            for uv in _cut(spline, _cut(spline, [line], 0), 1):
+                yield from _inside(others, uv, ON_BORDER * size * CORNERS)
 
 
-def _inside(geometry: OnSpline, uv: Array) -> list[tuple[int, int]]:
-    """Return the parts of a polyline (k, 2) in or on the trim, each of two vertices or more.
+def _cut(spline: Spline, lines: Iterable[Array], axis: int) -> Iterator[Array]:
+    """Yield the parts of polylines (k, 2) that are off open sides, each on one side of a seam.
 
-    A part (first, last) has the vertices [first, last).
+    Only mirrored seams count; parts beyond one are moved into the domain.
     """
-    trim = geometry.spline.trim
+    kind, (low, high), other = spline.boundary[axis][0], spline.domain[axis], 1 - axis
+    if kind == "periodic":
+        yield from lines
+        return
+    nudge = 0.0 if kind == "mirrored" else ON_BORDER * (high - low)
+
+    def in_domain(uv: Array) -> Flags:
+        return (uv[:, axis] >= low + nudge) & (uv[:, axis] <= high - nudge)
+
+    for line in lines:
+        turns = np.floor((line[:, axis] - low) / (high - low))
+        for k in np.unique(turns) if kind == "mirrored" else (0.0,):
+            uv = line.copy()
+            uv[:, axis] -= k * (high - low)
+            if k % 2.0:
+                uv[:, other] = sum(spline.domain[other]) - uv[:, other]
+            yield from inside(uv, in_domain)
+
+
+def _inside(trim: Trim | None, uv: Array, nudges: Array) -> list[Array]:
+    """Return the parts of a polyline (k, 2) in the trim, moved by one of the `nudges` (m, 2)."""
     if trim is None:
-        return [(0, len(uv))]
-    low, high = np.array(geometry.spline.domain).T
-    nudge = ON_BORDER * (high - low)
-    near = np.stack([uv + nudge * x for x in ((-1, -1), (-1, 1), (1, -1), (1, 1))])
-    inside = trim.contains(near.reshape(-1, 2)).reshape(4, -1).any(axis=0)
-    closed = np.array([closes(ends) for ends in geometry.spline.boundary])
-    inside &= ((uv >= low - nudge) & (uv <= high + nudge) | closed).all(axis=1)
-    ends = np.flatnonzero(np.diff(inside, prepend=False, append=False)).reshape(-1, 2)
-    return [(first, last) for first, last in ends.tolist() if last > first + 1]
+        return [uv]
+
+    def contains(uv: Array) -> Flags:
+        near = (uv + nudges[:, None]).reshape(-1, 2)
+        return np.any(trim.contains(near).reshape(len(nudges), -1), axis=0)
+
+    return inside(uv, contains)

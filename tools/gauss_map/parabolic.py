@@ -14,7 +14,7 @@ from ...runtime.spline.nets import AnySpline
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
-from .image_curve import ImageCurve, Traced, Zeros
+from .image_curve import ImageCurve, Zeros
 from .parabolic_spline import ZerosOfSpline
 from .parabolic_surface import CELLS, MOST_CELLS, ZerosOfSurface
 from .rectangles import merged
@@ -158,20 +158,18 @@ def parabolic_points(
         raise InputError(
             f"parabolic_points takes a Surface or a Spline, not {type(surface).__name__}."
         )
-    zeros = _zeros_of(surface, limit, _checked_cells(cells))
+    zeros = zeros_of(surface, limit, _checked_cells(cells))
     zeros.warn(stacklevel=3)
     isolated = [ParabolicPoint(uv, zeros.jets(uv[None])[0, 0], box) for uv, box in zeros.isolated()]
-    curves = tuple(x.curve for x in zeros.curves(limit))
+    curves = tuple(zeros.traced(uv, limit).curve for uv in zeros.polylines())
     flat = merged(zeros.flat, zeros.lines)
     return ParabolicPoints(curves, tuple(isolated), flat, bool(zeros.flat.all()))
 
 
-def traced_curves(surface: Surface | Spline, tolerance: float) -> list[Traced]:
-    """Return the curves of `parabolic_points` with the functions that can refine them."""
-    return _zeros_of(surface, tolerance, (CELLS, CELLS)).curves(tolerance)
-
-
-def _zeros_of(surface: Surface | Spline, tolerance: float, cells: tuple[int, int]) -> Zeros:
+def zeros_of(
+    surface: Surface | Spline, tolerance: float, cells: tuple[int, int] = (CELLS, CELLS)
+) -> Zeros:
+    """Return the zeros of K, the points of `parabolic_points`."""
     if isinstance(surface, Spline):
         return ZerosOfSpline(surface)
     return ZerosOfSurface(surface, cells, 0.125 * tolerance)

@@ -3,16 +3,16 @@
 from collections.abc import Callable, Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...runtime.base.aliases import Array, Flags
 from ...runtime.base.repeats import repeated
 
-Array = NDArray[np.float64]
 Evaluation = Callable[[Array], Array]
 # A segment whose midpoint is h from the curve is cut into √(h / size) parts, as the arc of a
 # parabola requires; other curves need a second or third pass.
 PASSES = 3
 MOST_PARTS = 1000
+BISECTIONS = 40
 
 
 def different(places: Iterable[Array], same: float | Array) -> Array:
@@ -48,6 +48,36 @@ def refined(uv: Array, evaluate: Evaluation, size: float, onto_curve: Evaluation
         near = np.abs(moved - straight).max(axis=1) <= longest[owner]
         uv = np.concatenate([moved[near], uv[-1:]])
     return uv
+
+
+def dense(line: Array, steps: Array) -> Array:
+    """Return a polyline (k, 2) with its segments cut into parts of at most `steps` (2,)."""
+    along = np.diff(line, axis=0)
+    parts = np.maximum(np.ceil(np.abs(along / steps).max(axis=1, initial=0.0)), 1).astype(np.int64)
+    owner, number = repeated(parts)
+    points = line[owner] + (number / parts[owner])[:, None] * along[owner]
+    return np.concatenate([points, line[-1:]])
+
+
+def inside(
+    uv: Array, contains: Callable[[Array], Flags], onto_curve: Evaluation | None = None
+) -> list[Array]:
+    """Return the parts of a polyline (k, 2) inside a region, each of two vertices or more.
+
+    Parts end at the border of the region, up to rounding. A segment crosses it at most once.
+    """
+    kept = contains(uv)
+    at = np.flatnonzero(kept[1:] != kept[:-1])
+    first = kept[at][:, None]
+    inner, outer = np.where(first, uv[at], uv[at + 1]), np.where(first, uv[at + 1], uv[at])
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (inner + outer)
+        middle = middle if onto_curve is None else onto_curve(middle)
+        is_in = contains(middle)
+        inner[is_in], outer[~is_in] = middle[is_in], middle[~is_in]
+    uv, kept = np.insert(uv, at + 1, inner, axis=0), np.insert(kept, at + 1, True)
+    ends = np.flatnonzero(np.diff(kept, prepend=False, append=False)).reshape(-1, 2)
+    return [uv[first:last] for first, last in ends.tolist() if last > first + 1]
 
 
 def distances(points: Array, start: Array, end: Array) -> Array:

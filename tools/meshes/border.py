@@ -5,13 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
-from ...runtime.base.repeats import repeated
 from ...runtime.domain.domain import Boundary
-from ...runtime.domain.loops import Loops
-from ...runtime.domain.trim import TrimPart
+from ...runtime.domain.trim import TrimPart, polygons_of
 from ...runtime.spline.missing import Known
 from ...runtime.spline.spline import Spline
 from ..gauss_map.chains import Segment, continued, joined
+from ..gauss_map.polylines import dense
 from ..gauss_map.sign_changes import sign_changes
 from .places import ON_SIDE, uv_at, wrapped
 
@@ -39,8 +38,9 @@ def border_lines(spline: Spline) -> list[Array]:
     for part in spline.trim.parts:
         others = [x for x in spline.trim.parts if x is not part]
         for line in _lines(part, spline):
-            dense = _with_crossings(_dense(line, spline), spline.boundary)
-            lines += _pieces(dense, _is_border(dense, part, others, spline))
+            fine = dense(line, 1.0 / (STEPS_A_CELL * np.array(spline.cells)))
+            fine = _with_crossings(fine, spline.boundary)
+            lines += _pieces(fine, _is_border(fine, part, others, spline))
     return lines
 
 
@@ -54,22 +54,12 @@ def _lines(part: TrimPart, spline: Spline) -> list[Array]:
     The other conditions are ignored.
     """
     low, high = np.array(spline.domain).T
-    if isinstance(part, Loops):
-        closed = [np.concatenate([x, x[:1]]) for x in part.polygons]
+    if polygons := polygons_of(part):
+        closed = [np.concatenate([x, x[:1]]) for x in polygons]
         return [(x - low) / (high - low) for x in closed]
     if isinstance(part, Known):
         return [line for line, _ in joined(list(_edges_of_known(part, spline.boundary)))]
     return [_refined(line, part, spline) for line in _changes(part, spline)]
-
-
-def _dense(line: Array, spline: Spline) -> Array:
-    """Return a polyline with its segments cut into short steps."""
-    along = np.diff(line, axis=0)
-    reach = (np.abs(along) * spline.cells).max(axis=1, initial=0.0)
-    parts = np.maximum(np.ceil(STEPS_A_CELL * reach), 1).astype(np.int64)
-    owner, number = repeated(parts)
-    points = line[owner] + (number / parts[owner])[:, None] * along[owner]
-    return np.concatenate([points, line[-1:]])
 
 
 def _with_crossings(line: Array, boundary: Boundary) -> Array:
@@ -103,7 +93,7 @@ def _is_border(line: Array, part: TrimPart, others: list[TrimPart], spline: Spli
         if ends[0] not in ("periodic", "mirrored"):
             found &= (middles[:, axis] > ON_SIDE) & (middles[:, axis] < 1.0 - ON_SIDE)
     places = middles + aside, middles - aside
-    if isinstance(part, Loops):
+    if polygons_of(part):
         left, right = (part.contains(_uv(x, spline)) for x in places)
         found &= left != right
     for other in others:

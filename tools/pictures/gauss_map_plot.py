@@ -11,7 +11,7 @@ from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.checks import finite_array
 from ...runtime.base.extras import check_extra
 from ...runtime.base.wording import plural
-from ...runtime.domain.loops import Loops
+from ...runtime.domain.trim import polygons_of
 from ...runtime.map import GaussMap
 from ..gauss_map.image_curve import ImageCurve
 from ..sampling.sample import sample
@@ -109,7 +109,7 @@ def plot(self: GaussMap, *, view: Sequence[float] = VIEW) -> Figure:
 def _borders(gauss_map: GaussMap) -> tuple[ImageCurve, ...]:
     """Return the images of the boundary; none if a trim is not given by loops."""
     trim = getattr(gauss_map.surface, "trim", None)
-    if trim is not None and not all(isinstance(x, Loops) for x in trim.parts):
+    if trim is not None and not all(polygons_of(x) for x in trim.parts):
         return ()
     return gauss_map.border_image()
 

@@ -6,6 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ...refusals import refused
+from ...shapes import klein_bottle
 
 pytestmark = pytest.mark.compiled
 
@@ -88,16 +89,28 @@ def test_the_image_turns_back_at_cusps_only(knobby):
     assert cusps == 8
 
 
-def test_the_number_of_points_does_not_change_within_the_margin(knobby):
+STAR = gm.directions.circle(14) * np.where(np.arange(14) % 2, 2.0, 0.7)[:, None] + 3.0
+SURFACES = {
+    "sharp corners, reversed": KNOBBY.trimmed([STAR]).flipped(),
+    "beyond open sides": gm.surfaces.wavy_graph().trimmed([[(-9, 0), (0, 0.4), (9, 0), (0, -0.4)]]),
+    "across a mirrored seam": gm.surfaces.moebius_band().trimmed([[(5, -3), (9, 0), (5.5, 0.5)]]),
+    "bottle": klein_bottle(),
+}
+
+
+@pytest.mark.quick_for("sharp corners, reversed", "across a mirrored seam")
+@pytest.mark.parametrize("name", SURFACES)
+def test_the_number_of_points_does_not_change_within_the_margin(name: str):
+    known = gm.GaussMap(SURFACES[name])
     random = np.random.default_rng(0)
     normals = gm.fibonacci(40)
-    margins, counts = np.radians(knobby.margin(normals)), knobby.count(normals)
+    margins, counts = np.radians(known.margin(normals)), known.count(normals)
     for _ in range(20):
         beside = np.cross(normals, random.normal(size=normals.shape))
         beside /= np.linalg.norm(beside, axis=1, keepdims=True)
         share = 0.9 * random.random(len(normals)) * margins
         moved = np.cos(share)[:, None] * normals + np.sin(share)[:, None] * beside
-        assert (knobby.count(moved) == counts).all()
+        assert (known.count(moved) == counts).all()
 
 
 def test_borders_of_a_bowl():
