@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.aliases import Array, Flags, Indices
+from ..base.errors import SurfaceError
 from ..domain.domain import Boundary, Domain, cells_between
 from ..domain.trim import Trim
 from ..spline.misfit import Misfit
@@ -249,6 +250,11 @@ def probe_of(surface: Surface, cells: tuple[int, int]) -> Probe:
     parts = _places(counts)
     points = _points(surface, parts)
     finite = points[np.isfinite(points).all(axis=1)]
+    if len(finite) < 2:
+        raise SurfaceError(
+            f"surface {surface.name!r} is finite at {len(finite)} of {len(points):,} places of its "
+            "domain; choose a smaller domain around its trim."
+        )
     sizes = np.array([np.ptp(x) for x in finite.T])
     extent, largest = float(sizes.max()), float(np.abs(finite).max())
     first = len(points) - counts.spread

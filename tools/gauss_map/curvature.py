@@ -8,6 +8,7 @@ import numpy as np
 
 from ...generated import gaussian_image as formulas
 from ...runtime.base.aliases import Array
+from ...runtime.base.errors import SurfaceError
 from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.base.scales import not_too_large, scale_to_one
 from ...runtime.base.tolerances import DERIVATIVE_ERROR
@@ -59,6 +60,12 @@ class Curvature:
         self.ends = np.where(self.wraps, -np.inf, self.low), ends
         lines = (np.linspace(*ends, SIZES) for ends in surface.domain)
         places = surface.evaluate(*np.meshgrid(*lines)).reshape(-1, 3)
+        places = places[np.isfinite(places).all(axis=1)]
+        if not len(places):
+            raise SurfaceError(
+                f"surface {surface.name!r} is finite at none of {SIZES} x {SIZES} places of its "
+                "domain; choose a smaller domain around its trim."
+            )
         extent = np.ptp(not_too_large(places, surface.name), axis=0)
         self.scale = scale_to_one(float(extent.max()))
         self.size = float(np.linalg.norm(self.scale * extent)) / self.scale

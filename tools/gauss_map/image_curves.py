@@ -55,6 +55,12 @@ def folds(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve, ...]:
     InputError
         For a tolerance out of range, and for parts.
 
+    Warns
+    -----
+    GaussmapWarning
+        If the curvature cannot be computed on more than 0.01 % of the domain, inside the trim:
+        folds end there.
+
     See Also
     --------
     gaussmap.gauss_map.parabolic_points : the parabolic curves of a surface without its trim, with
@@ -155,7 +161,9 @@ def _geometries(gauss_map: GaussMap) -> Sequence[OnSpline]:
 
 def _folds(geometry: OnSpline, tolerance: float) -> Iterator[Traced]:
     """Yield the folds of a geometry inside its trim."""
-    zeros, trim = zeros_of(geometry.surface or geometry.spline, tolerance), geometry.spline.trim
+    surface = geometry.surface or geometry.spline
+    zeros, trim = zeros_of(surface, tolerance), surface.trim
+    zeros.warn(stacklevel=5)
     for uv in zeros.polylines():
         for part in [uv] if trim is None else inside(uv, trim.contains, zeros.onto):
             yield zeros.traced(part, tolerance)
@@ -183,12 +191,12 @@ def _sides(geometry: OnSpline) -> Iterator[Array]:
                 line, inwards = np.full((len(along), 2), value), np.zeros(2)
                 line[:, 1 - axis] = along
                 inwards[axis] = ON_BORDER * (low + high - 2.0 * value)
-                yield from _inside(spline.trim, line, inwards[None])
+                yield from _inside(_trim_of(geometry), line, inwards[None])
 
 
 def _loops(geometry: OnSpline) -> Iterator[Array]:
     """Yield the loops of the trim inside the domain; InputError if it has other boundaries."""
-    spline, trim = geometry.spline, geometry.spline.trim
+    spline, trim = geometry.spline, _trim_of(geometry)
     size = np.diff(spline.domain)[:, 0]
     if trim is None:
         return
@@ -204,6 +212,11 @@ def _loops(geometry: OnSpline) -> Iterator[Array]:
             line = dense(np.concatenate([polygon, polygon[:1]]), size / PARTS_OF_SIDE)
             for uv in _cut(spline, _cut(spline, [line], 0), 1):
                 yield from _inside(others, uv, ON_BORDER * size * CORNERS)
+
+
+def _trim_of(geometry: OnSpline) -> Trim | None:
+    """Return the trim of the surface, or of a spline without one."""
+    return (geometry.surface or geometry.spline).trim
 
 
 def _cut(spline: Spline, lines: Iterable[Array], axis: int) -> Iterator[Array]:

@@ -59,7 +59,10 @@ class ZerosOfSurface(Zeros):
 
     def warn(self, stacklevel: int) -> None:
         """Warn if K is unknown on a part of the domain."""
-        unknown = float(self.grid.areas[self.grid.unknown].sum())
+        grid, trim = self.grid, self.surface.trim
+        middles = grid.at(np.argwhere(grid.unknown)) + 0.5 * grid.cell
+        inside = True if trim is None else trim.contains(middles)
+        unknown = float((grid.areas[grid.unknown] * inside).sum())
         if unknown > WORTH_A_WARNING:
             warnings.warn(
                 f"the curvature of {self.surface.name!r} cannot be computed on "
