@@ -16,6 +16,7 @@ from ...runtime.base.errors import InputError, shown
 from ...runtime.directions.unit import as_normals
 from ...runtime.fitting.fit import patches_of
 from ...runtime.spline.nets import AnySpline
+from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from .area import measures_of
 from .boundary import BoundaryArc, boundary_arcs, edge_arcs
@@ -250,6 +251,11 @@ class GaussianImages:
                 f"GaussianImages takes a Spline, not {type(self.spline).__name__}; for a surface "
                 "there is GaussianImages.of_spline, and for one patch GaussianImage.of_patch."
             )
+        if isinstance(self.spline, Spline) and self.spline.trim is not None:
+            raise InputError(
+                f"{self.spline.name!r} is trimmed; Gaussian images are of whole patches: choose "
+                "a domain that ends at its border."
+            )
 
     def __repr__(self) -> str:
         return f"GaussianImages({len(self):,} patches)"
@@ -275,7 +281,7 @@ class GaussianImages:
         Raises
         ------
         InputError
-            For `cells` with a spline, and as `fit`.
+            For `cells` with a spline, for trimmed surfaces, and as `fit`.
         UnknownNameError, SurfaceError
             As `fit`.
 

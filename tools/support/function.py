@@ -65,8 +65,8 @@ class SupportFunction:
     ) -> SupportFunction:
         """Return the support function of a spline, with the branches of all its patches.
 
-        Each point with a given normal gives exactly one branch. Flat and developable patches have
-        no support function, and so no branch.
+        Each point with a given normal, inside the trim, gives exactly one branch. Flat and
+        developable patches have no support function, and so no branch.
 
         Parameters
         ----------

@@ -13,6 +13,7 @@ from ...generated import patch as formulas
 from ...runtime.base.bridge import bezier_triangle
 from ...runtime.base.errors import InputError
 from ...runtime.base.formula_calls import python_function, vector
+from ...runtime.domain.trim import samples_inside
 from ...runtime.map import GaussMap
 from ...runtime.samples.fields import Component
 from ...runtime.samples.report import SamplingReport
@@ -106,23 +107,24 @@ class SplineSource:
     spline: AnySpline
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
-        """Return all branches, sorted by normal, then by patch."""
+        """Return all branches inside the trim, sorted by normal, then by patch."""
         hits = find(self.spline, normals)
         fields = fill(self.spline, normals, hits)
         known = np.full((len(hits), 2), np.nan)
         known[hits.exact] = hits.local[:, 3:5]
-        patches, rows = hits.patch_index, hits.normal_index
+        patches, rows, trim = hits.patch_index, hits.normal_index, None
         if isinstance(self.spline, NetSpline):
             hessian = _hessians_in_nets(self.spline, patches, normals[rows], fields["uv"])
         else:
-            hessian = np.empty((len(hits), 3, 3))
+            trim, hessian = self.spline.trim, np.empty((len(hits), 3, 3))
             kernels.hessians_of_patches(
                 self.spline.coefficients, self.spline.scale, patches, normals[rows], known, hessian
             )
-        return Sheets(
+        found = Sheets(
             rows, fields["points"], hessian, fields["gaussian_curvature"],
             fields["mean_curvature"], patches, fields["uv"],
         )  # fmt: skip
+        return Sheets(**samples_inside(trim, vars(found), tuple(vars(found))))
 
     def expression(self) -> None:
         """Return None: a spline has one expression for each patch."""

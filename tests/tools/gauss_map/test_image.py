@@ -335,6 +335,8 @@ def test_other_bad_input() -> None:
     images = gm.gauss_map.GaussianImages.of_spline(spline)
     refused("cells", gm.gauss_map.GaussianImages.of_spline, spline, (4, 4))
     refused("Surface", gm.gauss_map.GaussianImages.of_spline, 5)
+    square = gm.surfaces.torus().trimmed([[(1, 1), (2, 1), (2, 2), (1, 2)]])
+    refused("of whole patches", gm.gauss_map.GaussianImages.of_spline, square)
     with pytest.raises(IndexError):
         images[len(images)]
     for count in (1, 0, 2.5, None):

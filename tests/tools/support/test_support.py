@@ -1,5 +1,6 @@
 """Support functions given as expressions and by splines: envelope, curvatures, branches."""
 
+from dataclasses import replace
 from typing import Any
 
 import gaussmap as gm
@@ -161,8 +162,17 @@ def torus() -> gm.Spline:
     return gm.fit(gm.surfaces.torus(major=1.0, minor=0.35), (48, 48))
 
 
-@pytest.mark.parametrize("normals", [gm.icosphere(12), gm.fibonacci(5000)], ids=["ico", "fib"])
-def test_spline_has_the_branches_that_sampling_finds(torus: gm.Spline, normals: Array) -> None:
+@pytest.mark.parametrize(
+    ("normals", "is_trimmed"),
+    [(gm.icosphere(12), False), (gm.fibonacci(5000), True)],
+    ids=["ico", "trimmed"],
+)
+def test_spline_has_the_branches_that_sampling_finds(
+    torus: gm.Spline, normals: Array, is_trimmed: bool
+) -> None:
+    if is_trimmed:
+        triangle = gm.surfaces.torus().trimmed([[(1, 1), (5, 1), (3, 9)]])
+        torus = replace(torus, trim=triangle.trim)
     branches = gm.SupportFunction.of_spline(torus).branches(normals)
     samples = gm.sample(torus, normals=normals)
     same = np.abs(branches.normals[:, 2]) < 1.0  # others are on two circles, with one sample each
