@@ -20,8 +20,6 @@ from numpy.typing import NDArray
 
 from ...generated.spline import CORNERS
 from ..base.threads import over_ranges
-from ..base.tolerances import SINGULAR_POINT
-from ..spline.kernels.patch import normals_at
 from ..spline.spline import Spline
 from .kernels.decide import Decided, decide_exactly
 from .long_integers import forms_of_pairs
@@ -74,7 +72,7 @@ def decide(
         near &= total <= 1.0 + tolerance
         local[near] /= total[near, None]
     which = np.flatnonzero(inside | near)
-    regular, directions = _regular_places(spline, patches[which], local[which])
+    _, regular, directions = spline._regular_places(patches[which], local[which])
     towards = np.einsum("kx,kx->k", directions, normals[which]) > 0.0
     which, regular = which[towards], regular[towards]
     number, sign = numbers[which], signs[which, 0]
@@ -111,28 +109,6 @@ def decided_forms(
                 spline, patches[chunk], normals[chunk]
             )
     return local, size, signs
-
-
-def _regular_places(
-    spline: Spline, patches: NDArray[np.int64], local: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return parameters (k, 2) of regular points, and p_u × p_v (k, 3) at these points.
-
-    A point counts as singular if |p_u × p_v| is negligible relative to its value at the centre of
-    the patch. The parameters of a singular point are moved slightly towards the centre; those of
-    other points are kept.
-    """
-
-    def normals(places: NDArray[np.float64]) -> NDArray[np.float64]:
-        result = np.empty((len(patches), 3))
-        normals_at(spline.coefficients, spline.scale, patches, places, result)
-        return result
-
-    centre = np.full_like(local, 1 / 3)
-    lengths = (np.linalg.norm(normals(x), axis=1) for x in (local, centre))
-    singular = np.less_equal(next(lengths), SINGULAR_POINT * next(lengths))
-    places = np.where(singular[:, None], local + SINGULAR_POINT * (centre - local), local)
-    return places, normals(places)
 
 
 def _in_cells(

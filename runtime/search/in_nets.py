@@ -21,7 +21,7 @@ from ...generated.vectors import Vector
 from ..base.aliases import Array, Flags, Indices
 from ..base.formula_calls import patch, python_function, vector
 from ..base.kept import kept
-from ..base.tolerances import FORM_ERROR, SINGULAR_POINT
+from ..base.tolerances import FORM_ERROR
 from ..spline.joints import EDGES
 from ..spline.nets import NetSpline, vectors_of_nets
 from ..spline.tips import tips_of
@@ -105,9 +105,8 @@ def decide_in_nets(
     place = np.where(bars.max(axis=1) > 1.0 - SAME_PLACE, corner, -1 - np.arange(len(which)))
     keep = first_of_each_place(numbers[which], place[:, None].astype(np.float64), near)
     which, local = which[keep], local[keep]
-    _, singular = spline._normals_in_patches(patches[which], local[:, :2])
-    towards = np.where(singular[:, None], SINGULAR_POINT, 0.0) * (1.0 / 3.0 - local[:, :2])
-    return Decision(which, np.column_stack([local, local[:, :2] + towards, 0.0 * local[:, 0]]))
+    _, regular, _ = spline._regular_places(patches[which], local[:, :2])
+    return Decision(which, np.column_stack([local, regular, 0.0 * local[:, 0]]))
 
 
 def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -> Flags:
@@ -117,7 +116,7 @@ def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -
     tangents are perpendicular to a circle of directions, and at tips, the cosine of the angle must
     be more than SAME_NORMAL.
     """
-    N, singular = spline._normals_in_patches(patches, places)
+    singular, _, N = spline._regular_places(patches, places)
     tips = tips_of(spline)
     if tips is not None:
         singular |= tips.touching[patches]
@@ -319,7 +318,7 @@ def fields_in_nets(
         uv = np.stack([u, v], axis=1)
         points = spline._points_in_patches(patches, uv)
         u[exact], v[exact] = local[:, 3], local[:, 4]
-        N, _ = spline._normals_in_patches(patches[exact], local[:, 3:5])
+        _, _, N = spline._regular_places(patches[exact], local[:, 3:5])
         at = n.copy()
         at[exact] = N / np.linalg.norm(N, axis=1, keepdims=True)
         K, H = python_function(formulas.curvature_at)(patch, vector(at), u, v)

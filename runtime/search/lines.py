@@ -16,7 +16,7 @@ from ...generated import patch as formulas
 from ...generated.spline import CORNERS as OUTER
 from ..base.aliases import Array, Flags, Indices
 from ..base.formula_calls import python_function, vector
-from ..base.tolerances import FORM_ERROR
+from ..base.tolerances import FORM_ERROR, SINGULAR_POINT
 from ..samples.fields import Component
 from ..spline.joints import linked
 from ..spline.nets import AnySpline, NetSpline
@@ -28,8 +28,8 @@ from .kernels.lists import NUMBER
 BESIDE, DIRECTION = 64.0, np.array([1.0, 1e-2, 1e-4])
 # Points of a patch this near to a corner or an edge, in u and v, are on it.
 TOUCHING = 1e-6
-# The parameters u, v, w of the corners of a patch.
-CORNERS = np.eye(3)
+# The parameters u, v of the corners of a patch, and of its centre.
+CORNERS, CENTRE = np.eye(3)[:, :2], np.full(2, 1.0 / 3.0)
 # For each edge, the corners at its start and its end. The control points at corners, and of edges.
 NEXT, LAST = [1, 2, 0], [2, 0, 1]
 NODES = [0, 1, 2, 5, 4, 3]
@@ -69,6 +69,9 @@ def lines_of(spline: AnySpline, keys: Indices, normals: Array) -> Lines:
         np.take_along_axis(x, order, axis=1).T for x in (values, slopes)
     )
     axis = np.take_along_axis(axes, order[:, None], axis=2)[..., 1]
+    near = (np.abs(flat) <= error) & (np.abs(along) <= error)
+    keys, n, error, axis = keys[near], n[near], error[near], axis[near]
+    steep, across = steep[near], across[near]
     with np.errstate(divide="ignore", invalid="ignore"):
         # The distances of the corners from the line, and half the width of the line.
         away = np.stack([axis[:, 0], axis[:, 1], 0.0 * steep], axis=1) + (across / steep)[:, None]
@@ -80,12 +83,11 @@ def lines_of(spline: AnySpline, keys: Indices, normals: Array) -> Lines:
     ends = corners.sum(axis=1) + crossing.sum(axis=1)
     bars[ends == 0] = 1.0
     at = (bars / bars.sum(axis=1, keepdims=True))[:, :2]
-    N, singular = spline._normals_in_patches(keys & NUMBER, at)
-    found = (np.abs(flat) <= error) & (np.abs(along) <= error)
-    found &= np.einsum("kx,kx->k", N, n) > 0.0
-    for corner in CORNERS[:, :2]:
-        singular |= spline._normals_in_patches(keys & NUMBER, at * 0.0 + corner)[1]
-    found &= ~singular
+    places = np.concatenate([at, np.repeat([*CORNERS, CENTRE], len(at), axis=0)])
+    N = spline._cross_products(np.tile(keys & NUMBER, 5), places).reshape(5, -1, 3)
+    lengths = np.linalg.norm(N, axis=2)
+    found = np.einsum("kx,kx->k", N[0], n) > 0.0
+    found &= (lengths[:4] > SINGULAR_POINT * lengths[4]).all(axis=0)
     touched = np.concatenate([corners, crossing | corners[:, NEXT] | corners[:, LAST]], axis=1)
     return Lines(keys[found], touched[found], at[found], ends[found])
 

@@ -141,6 +141,10 @@ class NetSpline(PatchSpline, NetMethods):
         zero = np.zeros_like(a)
         return Patch(vector(a), vector(b), vector(c), vector(d), vector(e), vector(zero))
 
+    def _cross_products(self, patches: NDArray[np.int64], places: Array) -> Array:
+        patch = self._patch(patches)
+        return np.stack(python_function(formulas.tangents)(patch, *places.T)[2], axis=1)
+
     def _origins(self, rows: NDArray[np.int64]) -> Array:
         return self.control_nets[rows, 2]
 

@@ -57,22 +57,26 @@ class PatchSpline(Immutable, ABC):
         x = python_function(formulas.envelope)(self._patch(patches), *places.T)
         return np.stack(x, axis=1) / self.scale + self._origins(patches)
 
-    def _normals_in_patches(self, patches: Indices, places: Array) -> tuple[Array, Flags]:
-        """Return unnormalized normals (k, 3) of patches (k,) at parameters u, v (k, 2).
+    @abstractmethod
+    def _cross_products(self, patches: Indices, places: Array) -> Array:
+        """Return p_u × p_v (k, 3) of patches (k,) at parameters u, v (k, 2)."""
 
-        At a singular point, which has no normal, the result is the normal of a nearby point towards
-        the centre of the patch. The second array (k,) is True for singular points.
+    def _regular_places(self, patches: Indices, places: Array) -> tuple[Flags, Array, Array]:
+        """Return which points of patches are singular, regular points instead, and p_u × p_v there.
+
+        Point i has the parameters places[i] in the patch patches[i]. It is singular if |p_u × p_v|
+        is negligible relative to its value at the centre of the patch. The second array (k, 2) has
+        its parameters, moved slightly towards the centre; those of other points are kept. The third
+        array (k, 3) is p_u × p_v at these parameters.
         """
-        patch = self._patch(patches)
-
-        def normals_at(at: Array) -> Array:
-            return np.stack(python_function(formulas.tangents)(patch, *at.T)[2], axis=1)
-
-        here, centre = normals_at(places), normals_at(np.full_like(places, 1.0 / 3.0))
-        lengths = (np.linalg.norm(x, axis=1) for x in (here, centre))
-        singular = np.less_equal(next(lengths), SINGULAR_POINT * next(lengths))
-        beside = normals_at(places + SINGULAR_POINT * (1.0 / 3.0 - places))
-        return np.where(singular[:, None], beside, here), singular
+        centre = np.full_like(places, 1.0 / 3.0)
+        here, there = (self._cross_products(patches, x) for x in (places, centre))
+        singular = np.less_equal(
+            np.linalg.norm(here, axis=1), SINGULAR_POINT * np.linalg.norm(there, axis=1)
+        )
+        moved = places + SINGULAR_POINT * (centre - places)
+        places = np.where(singular[:, None], moved, places)
+        return singular, places, self._cross_products(patches, places)
 
     @cached_property
     def scale(self) -> float:

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...generated.spline import NEIGHBOURS, SCALE, TRIANGLE_NEIGHBOURS, triangle
-from ...generated.vectors import Patch
+from ...generated.vectors import Patch, Vector
 from ..base.checks import checked_array, parameter_arrays, text
 from ..base.errors import InputError
-from ..base.formula_calls import python_function, vector
+from ..base.formula_calls import python_function
 from ..base.georeference import Georeference
 from ..base.threads import over_ranges
 from ..base.tolerances import SAME_PARAMETER
@@ -22,6 +22,7 @@ from ..domain.domain import Boundary, Domain, brought_inside, checked_boundary, 
 from ..domain.inside import Inside
 from .developable import CellMeasure
 from .kernels import spline as kernels
+from .kernels.patch import normals_at
 from .patch_spline import PatchSpline
 from .spline_methods import Methods
 
@@ -151,9 +152,16 @@ class Spline(PatchSpline, Methods):
     def _patch(self, rows: NDArray[np.int64] | slice = slice(None)) -> Patch:
         """Return the vectors of the patches `rows` times `scale`, for formulas."""
         around = self._coefficients_around(np.arange(self.patches)[rows])
-        steps = (around - around[:, CENTRE, None]) * (self.scale / SCALE)
-        read = np.moveaxis(steps[:, TRIANGLE_NEIGHBOURS], 1, 0)
-        return python_function(triangle)(*map(vector, read))
+        around = np.ascontiguousarray(np.moveaxis(around, 0, 2))  # arithmetic is faster on rows
+        steps = (around[TRIANGLE_NEIGHBOURS] - around[CENTRE]) * (self.scale / SCALE)
+        return python_function(triangle)(*(Vector(*x) for x in steps))
+
+    def _cross_products(
+        self, patches: NDArray[np.int64], places: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        found = np.empty((len(patches), 3))
+        normals_at(self.coefficients, self.scale, patches, np.ascontiguousarray(places), found)
+        return found
 
     def _origins(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
         return self._coefficients_around(rows)[:, CENTRE]

@@ -140,7 +140,7 @@ def _normals(spline: NetSpline, patches: Indices, uv: Array, smooth: Links) -> A
     If all patches around a point are singular there, they share a normal only if their normals
     agree.
     """
-    N, singular = spline._normals_in_patches(patches, uv)
+    singular, _, N = spline._regular_places(patches, uv)
     own = unit_or_zero(N)
     count, group = linked(len(own), *smooth)
     regular = _any(count, group, ~singular)
