@@ -10,6 +10,7 @@ parameter along the crease, and s the parameter across it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -27,17 +28,16 @@ from ..surface.surface import Surface
 from ..tape.kernels.points import Tape
 from ..tape.tapes import bounds_over_boxes, jets_of
 
-# Intervals of w in which n·x_w may have several zeros are halved at most DEEPEST times, or until a
-# normal has more than MANY intervals, as on a straight crease. An interval with at most one zero
-# takes STEPS steps of Newton's method.
-DEEPEST, MANY, STEPS = 20, 4096, 12
-# The normals of both sides are known up to the angle SMOOTH. Points of one crease and normal that
-# are closer than APART, relative to the length of the crease in w, are one component. The signs of
-# n·x_w before and after a component are taken at the distance APART from the component.
-SMOOTH, APART = 1e-9, 1e-6
-# The box of a corner has the radius SMOOTH, relative to the domain; within it, normals are assumed
-# to turn by at most the angle TURNED.
-TURNED = 16.0 * SMOOTH
+# Normals are known up to the angle SMOOTH. Where n·x_ww is 0, too, zeros of n·x_w are known up to
+# the root of that. Therefore points of one crease and normal that are closer than APART, relative
+# to the length of the crease in w, are one component. The signs of n·x_w before and after a
+# component are taken at the distance APART from the component.
+SMOOTH = 1e-9
+APART = math.sqrt(SMOOTH)
+# In intervals where n·x_w has at most one zero, there are STEPS steps of Newton's method. Other
+# intervals, and those where these steps do not settle, are halved. If a normal has more than MANY
+# of them, as on a straight crease, only those with a zero in the middle are kept.
+STEPS, MANY = 5, 4096
 # All combinations of whether the height increases along each of the four creases at a corner, and
 # the index of the corner for each combination.
 RISES = np.indices((2, 2, 2, 2)).reshape(4, -1).T == 1
@@ -53,7 +53,9 @@ class OnCreases(NamedTuple):
     `numbers` (k,) are the indices of the normals. `degrees` (k,) are the indices −1, 0 or 1 that
     the docstring of the module defines, or NaN where the index is unknown. The parameters of all
     points of a component differ by at most `radius` (k, 2) from `uv` (k, 2). A point is `unsure` if
-    its normal is that of one side, up to rounding, or if its index is unknown.
+    its normal is that of one side, up to rounding, or if its index is unknown. In the first case
+    the side may have a regular point with this normal next to it. If its index is −degree, the
+    points are `paired`: there are both or none. Otherwise there is one of them.
     """
 
     numbers: Indices
@@ -62,15 +64,16 @@ class OnCreases(NamedTuple):
     degrees: Array
     radius: Array
     unsure: Flags
+    paired: Flags
 
 
 class Corner(NamedTuple):
     """A point where a crease u = const and a crease v = const cross.
 
     `lines` (2,) are the indices of both creases. `uv` (2,) are its parameters, `point` (3,) is its
-    position. Points of creases within `radius` (2,) of `uv` belong to the corner. `tangents` (4, 3)
-    are tangents of the four creases that leave the corner, counter-clockwise, at the distance
-    `radius` from it.
+    position. Points of creases within `radius` (2,) of `uv`, which is rounding error, belong to the
+    corner. `tangents` (4, 3) are unit tangents of the four creases that leave the corner,
+    counter-clockwise.
     """
 
     lines: Indices
@@ -83,12 +86,13 @@ class Corner(NamedTuple):
     def of(cls, tape: Tape, numbers: Sequence[int], lines: Array, spans: Array) -> Corner:
         """Return the corner of two creases with the given rows of `Creases.lines` and `.spans`."""
         (_, left, right, _), (_, below, above, _) = lines
-        radius = SMOOTH * np.ptp(spans[::-1], axis=1)
-        u = np.array([right, right + radius[0], right, left - radius[0], right])
-        v = np.array([above, above, above + radius[1], above, below - radius[1]])
+        radius, size = lines[:, 2] - lines[:, 1], np.ptp(spans[::-1], axis=1)
+        radius -= size * np.rint(radius / size)  # on both sides of a seam
+        u, v = np.array([right, right, left, right]), np.array([above, above, above, below])
         jets = jets_of(tape, u, v)
-        tangents = jets[1:, 1:3][np.arange(4), [0, 1, 0, 1]] * [[1.0], [1.0], [-1.0], [-1.0]]
-        return cls(np.array(numbers), np.array([right, above]), radius, jets[0, 0], tangents)
+        tangents = jets[np.arange(4), [1, 2, 1, 2]] * [[1.0], [1.0], [-1.0], [-1.0]]
+        at = np.array([right, above])
+        return cls(np.array(numbers), at, radius, jets[0, 0], unit_or_zero(tangents))
 
     def is_near(self, rows: Indices, along: Array, periods: Array) -> Flags:
         """Return a mask (k,) of the points of creases that belong to the corner.
@@ -107,30 +111,31 @@ class Corner(NamedTuple):
         """Return the corner once for each of the unit normals (S, 3) that is in its normal cone.
 
         The index follows from the signs of the slopes of n·x along the four creases; corners with
-        the index 0 are left out. Where the index depends on a slope that is 0 up to `TURNED`, the
-        degree is NaN and the point `unsure`.
+        the index 0 are left out. Where the index depends on a slope that is 0 up to rounding, or
+        where the normal is that of one of the four sides, the degree is NaN and the point `unsure`.
         """
-        facing = normals @ unit_or_zero(np.cross(self.tangents, np.roll(self.tangents, -1, 0))).sum(
-            axis=0
-        )
-        slopes = normals @ unit_or_zero(self.tangents).T
-        zero = np.abs(slopes) <= TURNED
+        following = np.roll(self.tangents, -1, axis=0)
+        facing = normals @ unit_or_zero(np.cross(self.tangents, following)).sum(axis=0)
+        slopes = normals @ self.tangents.T
+        zero, flat = np.abs(slopes) <= SMOOTH, np.abs(slopes) <= 2.0 * SMOOTH
         degrees = np.full((len(normals), len(RISES)), np.nan)
         for k, (rises, degree) in enumerate(zip(RISES, DEGREES, strict=True)):
             degrees[(zero | (rises == (slopes > 0.0))).all(axis=1), k] = degree
         low, high = np.fmin.reduce(degrees, axis=1), np.fmax.reduce(degrees, axis=1)
-        (numbers,) = np.nonzero((facing > 0.0) & ((low != 0.0) | (high != 0.0)))
-        low, unsure = low[numbers], (low != high)[numbers]
+        unsure = (low != high) | (flat & np.roll(flat, -1, axis=1)).any(axis=1)
+        (numbers,) = np.nonzero((facing > 0.0) & (unsure | (low != 0.0)))
+        low, unsure = low[numbers], unsure[numbers]
         uv, points, radius = (
             np.tile(x, (len(numbers), 1)) for x in (self.uv, self.point, self.radius)
         )
-        return OnCreases(numbers, uv, points, np.where(unsure, np.nan, low), radius, unsure)
+        degrees, none = np.where(unsure, np.nan, low), np.zeros(len(numbers), np.bool_)
+        return OnCreases(numbers, uv, points, degrees, radius, unsure, none)
 
 
 class _Sides(NamedTuple):
     """Bounds of derivatives over k intervals of creases.
 
-    `first` and `second` are x_w and x_ww along the crease, `before` and `after` are x_s on both
+    `first` and `second` are x_w and x_ww / 2 along the crease, `before` and `after` are x_s on both
     sides. Each is a pair of vectors (k, 3): the value in the middle of the interval, and bounds of
     the differences from it.
     """
@@ -195,13 +200,14 @@ class Creases:
         axis = self.lines[rows, 0].astype(int)
         index = np.arange(len(rows))
         across = [x[index, 1 + axis] for x in jets]
-        slopes = [np.einsum("kx,kx->k", x, given) for x in across]
         lengths = [np.linalg.norm(x, axis=1) for x in across]
-        slack = [SMOOTH * x for x in lengths]
+        heights = [np.einsum("kjx,kx->jk", x, given) for x in jets]
+        slopes = [x[1 + axis, index] for x in heights]
+        unsures = [np.abs(x) <= SMOOTH * y for x, y in zip(slopes, lengths, strict=True)]
         facing = sum(
             np.einsum("kx,kx->k", unit_or_zero(np.cross(x[:, 1], x[:, 2])), given) for x in jets
         )
-        unsure = (np.abs(slopes[0]) <= slack[0]) | (np.abs(slopes[1]) <= slack[1])
+        unsure = unsures[0] | unsures[1]
         keep = (facing > 0.0) & (unsure | (slopes[0] * slopes[1] < 0.0))
         # At a pole, x_s is 0 and the creases that end there have no direction across.
         largest = np.linalg.norm(self.sides.after[0], axis=1).max()
@@ -215,7 +221,9 @@ class Creases:
         radius[index, axis] = 0.0
         for corner in self.corners:
             keep &= ~corner.is_near(rows, middle, self.lines[:, 3])
-        found = OnCreases(numbers, uv, jets[1][:, 0], degrees, radius, unsure)
+        of_sides = np.where(unsures[0], *(np.sign(x[3] * x[5] - x[4] ** 2) for x in heights))
+        paired = of_sides == -degrees
+        found = OnCreases(numbers, uv, jets[1][:, 0], degrees, radius, unsure, paired)
         found = OnCreases._make(x[keep] for x in found)
         if not self.corners:
             return found
@@ -237,9 +245,11 @@ class Creases:
         for k in np.flatnonzero(at.unsure | np.isin(at.numbers, special)).tolist():
             own = (found.normal_index == at.numbers[k]) & (kinds != Component.CREASE)
             near = (np.abs(found.points[own] - at.points[k]) <= APART * size).all(axis=1)
-            near &= at.unsure[k] | (kinds[own] != Component.REGULAR)
-            near &= ~np.isnan(at.degrees[k])
-            keep[k] = not (near | (at.unsure[k] & (kinds[own] == Component.CURVE))).any()
+            regular = kinds[own] == Component.REGULAR
+            if (near & ~regular).any() or (at.unsure[k] & (kinds[own] == Component.CURVE)).any():
+                keep[k] = np.isnan(at.degrees[k])
+            elif at.unsure[k]:
+                keep[k] = np.isnan(at.degrees[k]) or (near & regular).any() == at.paired[k]
         return OnCreases._make(x[keep] for x in at)
 
     def _intervals(self, normals: Array) -> tuple[Indices, Indices, Array]:
@@ -254,19 +264,25 @@ class Creases:
             number, interval = np.nonzero(_may_be_zero(some, self.sides.first, True))
             sides = _Sides._make((x[0][interval], x[1][interval]) for x in self.sides)
             rows, ends = self.rows[interval], self.ends[interval]
-            for depth in range(DEEPEST + 1):
-                given = some[number]
-                keep = _may_be_zero(given, sides.first) & _may_be_between(given, sides)
-                number, rows, ends, given = number[keep], rows[keep], ends[keep], given[keep]
-                sides = _Sides._make((x[0][keep], x[1][keep]) for x in sides)
-                several = _may_be_zero(given, sides.second)
-                last = several & ((depth == DEEPEST) | (np.bincount(number)[number] > MANY))
-                zero = last & _may_be_zero(given, (sides.first[0], 0.0 * sides.first[1]))
-                found.append((first + number[zero], rows[zero], ends[zero]))
-                one = ~several
-                zeros, known = self._zeros(rows[one], ends[one], given[one])
-                found.append((first + number[one][known], rows[one][known], zeros[known]))
-                several &= ~last
+            while True:
+                given, width = some[number], np.ptp(ends, axis=1)
+                value, change = _product(given, sides.first)
+                bend, more = _product(given, sides.second)
+                change = np.minimum(change, width * (np.abs(bend) + more))
+                slack = SMOOTH * np.linalg.norm(sides.first[0], axis=1)
+                keep = (np.abs(value) <= change + slack) & _may_be_between(given, sides)
+                one = ~_may_be_zero(given, sides.second)
+                small = (change <= slack) | (width <= SMOOTH * np.ptp(self.spans[rows], axis=1))
+                several, small = keep & ~one & ~small, keep & ~one & small
+                at = np.flatnonzero(keep & one)
+                zeros, known, settled = self._zeros(rows[at], ends[at], given[at])
+                found.append((first + number[at[known]], rows[at[known]], zeros[known]))
+                several[at[~settled]] = True
+                of_normal = np.bincount(number[several], minlength=len(some))
+                straight = several & (of_normal[number] > MANY)
+                small |= straight & (np.abs(value) <= slack)
+                found.append((first + number[small], rows[small], ends[small]))
+                several &= ~straight
                 number, rows, ends = number[several], rows[several], ends[several]
                 if len(number) == 0:
                     break
@@ -277,23 +293,25 @@ class Creases:
         numbers, rows, ends = (np.concatenate(x) for x in zip(*found, strict=True))
         return numbers, rows, ends
 
-    def _zeros(self, rows: Indices, ends: Array, normals: Array) -> tuple[Array, Flags]:
-        """Return the zeros of n·x_w in intervals (k, 2) where it is monotonic, and a mask (k,).
+    def _zeros(self, rows: Indices, ends: Array, normals: Array) -> tuple[Array, Flags, Flags]:
+        """Return the zeros of n·x_w in intervals (k, 2) where it is monotonic, and two masks (k,).
 
-        A zero is returned as an interval of length 0; the mask is False where there is none.
+        A zero is returned as an interval of length 0. The first mask is False where there is none
+        or where it was not reached, the second one only where it was not reached.
         """
         low, high = ends.T
-        at = 0.5 * (low + high)
+        following = at = 0.5 * (low + high)
         along = 2 - self.lines[rows, 0].astype(int)
         index = np.arange(len(rows))
+        known = np.ones(len(rows), np.bool_)
         for _ in range(STEPS):
+            at = following
             jets = self._jets(rows, at, 2)
-            value = np.einsum("kx,kx->k", jets[index, along], normals)
-            slope = np.einsum("kx,kx->k", jets[index, np.array(SECOND)[along - 1]], normals)
-            at = np.clip(at - value / slope, low, high)
-        tangents = self._jets(rows, at, 2)[index, along]
-        value, size = np.einsum("kx,kx->k", tangents, normals), np.linalg.norm(tangents, axis=1)
-        return np.stack([at, at], axis=1), np.abs(value) <= SMOOTH * size
+            tangents, bends = jets[index, along], jets[index, np.array(SECOND)[along - 1]]
+            value, slope = (np.einsum("kx,kx->k", x, normals) for x in (tangents, bends))
+            known = np.abs(value) <= SMOOTH * np.linalg.norm(tangents, axis=1)
+            following = np.clip(at - value / slope, low, high)
+        return np.stack([following, following], axis=1), known, known | (following == at)
 
     def _merged(
         self, numbers: Indices, rows: Indices, ends: Array

@@ -7,6 +7,8 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
+from scipy.interpolate import BPoly, PPoly
 
 from .judge import Array, unit
 from .nets import Net, revolved, wrong_at
@@ -182,6 +184,49 @@ def test_creases_have_the_normals_between_those_of_both_sides() -> None:
 @pytest.mark.parametrize("name", CREASED)
 def test_creases_at_many_normals(name: str) -> None:
     check_creases(name, directions(8, 10_000))
+
+
+def test_zeros_along_a_crease() -> None:
+    """A ridge along the graph of f; f' has double zeros at 1/4 and 3/4, and a maximum at 1/2."""
+    slope = 16.0 * Polynomial([-0.25, 1.0]) ** 2 * Polynomial([-0.75, 1.0]) ** 2
+    heights = BPoly.from_power_basis(PPoly(slope.integ().coef[::-1, None], [0.0, 1.0])).c[:, 0]
+    ridge = np.stack([np.linspace(0.0, 1.0, 6), heights, np.zeros(6)], axis=1)
+    net = ridge[:, None] + np.array([(0, -1, -1), (0, 0, 0), (0, 1, -1)])
+    surface = gm.Surface.from_nurbs((5, 1), (clamped(5), [0, 0, 1, 2, 2]), net)
+    slopes = np.array([0.0, 1.0 / 16.0, *(1.0 / 16.0 - 10.0 ** -np.arange(1.5, 7.5)), 0.3, -0.01])
+    normals = unit(np.stack([-slopes, np.ones_like(slopes), 3.0 + 0.0 * slopes], axis=1))
+    known = gm.GaussMap(surface)
+    found = known.points(normals)
+    np.testing.assert_array_equal(found.component, gm.Component.CREASE)
+    assert found.report.undecided == ()
+    for k, value in enumerate(slopes):
+        zeros = (slope - value).roots()
+        zeros = zeros[np.abs(zeros.imag) < 1e-3].real
+        zeros = np.unique(zeros[(zeros > 0.0) & (zeros < 1.0)].round(7 if k < 2 else 16))
+        at = np.sort(found.uv[found.normal_index == k, 0])
+        np.testing.assert_allclose(at, zeros, rtol=0.0, atol=1e-6)
+    np.testing.assert_array_equal(known.degree(normals), 0)
+
+
+def test_normals_of_one_side_of_a_crease() -> None:
+    """The crease, or a regular point next to it, or both, or none has a point with the normal.
+
+    Judged by the degree of normals nearby. Normals of the sides of corners are undecided.
+    """
+    inner = 0.25, 0.5, 0.5, 0.75
+    surface = graph((2, 2), (clamped(2, *inner), clamped(2, *inner)), 0.1).surface
+    known, rng = gm.GaussMap(surface), np.random.default_rng(8)
+    places = np.stack([np.full(40, 0.5), rng.uniform(0.1, 0.9, 40)])
+    places = np.concatenate([places, places[::-1], np.full((2, 10), 0.5)], axis=1)
+    jets = surface.jets(*(places + 1e-13 * rng.choice([-1.0, 1.0], places.shape)))
+    own = unit(np.cross(jets[:, 1], jets[:, 2]))
+    nearby = [known.degree(own + 1e-6 * rng.normal(size=own.shape)) for _ in range(3)]
+    for size in (0.0, 1e-10, 1e-9, 1e-8):
+        normals = own + size * rng.normal(size=own.shape)
+        listed = {x.normal for x in known.points(normals).report.undecided or ()}
+        assert listed <= set(range(80, 90))
+        wrong = set(np.flatnonzero(known.degree(normals) != np.median(nearby, axis=0)).tolist())
+        assert wrong <= listed
 
 
 def test_corners_where_creases_cross() -> None:
