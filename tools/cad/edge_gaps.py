@@ -194,7 +194,9 @@ class EdgeGaps:
         """Return the points of edges with unit normals (S, 3)."""
         numbers, owner, shares = self._near(normals)
         given = normals[numbers]
-        one, other = (self._solved(owner, k, shares, given) for k in (0, 1))
+        sides = np.repeat([0, 1], len(owner))
+        found = self._solved(np.tile(owner, 2), sides, np.tile(shares, 2), np.tile(given, (2, 1)))
+        one, other = (_Side._make(x[sides == k] for x in found) for k in (0, 1))
         gaps = np.linalg.norm(other.normals - one.normals, axis=1)
         near = (gaps > GAP) & (gaps <= WIDEST)
         for x in (one, other):
@@ -235,9 +237,10 @@ class EdgeGaps:
         shares = np.clip((place + steps[near]) / (PLACES - 1.0), 0.0, 1.0)
         return numbers[near], owner, shares
 
-    def _solved(self, edges: Indices, side: int, shares: Array, normals: Array) -> _Side:
-        """Return the places of edges, near `shares` (k,), where n·t = 0 on one side."""
-        pieces, starts, steps = (x[edges, side] for x in (self.pieces, self.starts, self.steps))
+    def _solved(self, edges: Indices, side: Indices, shares: Array, normals: Array) -> _Side:
+        """Return the places of edges, near `shares` (k,), where n·t = 0 on the given sides (k,)."""
+        pieces = self.pieces[edges, side]
+        starts, steps = (x[edges, side] for x in (self.starts, self.steps))
         du, dv = steps.T[:, :, None]
         second = np.empty(0)
         for _ in range(STEPS):
@@ -282,7 +285,7 @@ def _jets(space: PartSpace, pieces: Indices, uv: Array) -> Array:
     """Return jets (k, 6, 3) of pieces (k,) at parameters (k, 2)."""
     found = np.empty((len(uv), 6, 3))
     for k, rows in grouped(pieces):
-        found[rows] = space.pieces[k].jets(*uv[rows].T.copy())
+        found[rows] = space.pieces[k].jets(*uv[rows].T)
     return found
 
 

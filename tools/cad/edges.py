@@ -198,7 +198,7 @@ def at_places(space: PartSpace, owner: Indices, uv: Array) -> Places:
     vectors, normals = np.empty((len(owner), 3, 3)), np.empty((len(owner), 3))
     curvatures = np.empty((len(owner), 2))
     for k, rows in grouped(owner):
-        jets = space.pieces[k].surface.jets(*places[rows].T.copy())
+        jets = space.pieces[k].jets(*places[rows].T)
         scales[1:] = space.sizes[k]
         n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
         evaluate_jets(jets, scales, n, K, H)
