@@ -517,8 +517,8 @@ class Surface(SurfaceValues):
     ) -> Surface:
         """Return the part of the surface inside closed polygons, or where a predicate holds.
 
-        Samples, their coverage, weights, meshes and silhouettes are those of the part. Gaussian
-        images and parabolic points are still those of the whole surface.
+        Samples, their coverage, weights, meshes and silhouettes are those of the part. Parabolic
+        points are still those of the whole surface, and Gaussian images are refused.
 
         Parameters
         ----------

@@ -1,15 +1,15 @@
 """The boundary of a trimmed surface: polylines in the domain, scaled to the unit square."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
-from ...runtime.domain.domain import Boundary
+from ...runtime.domain.domain import Boundary, closes
 from ...runtime.domain.trim import TrimPart, polygons_of
 from ...runtime.spline.missing import Known
 from ...runtime.spline.spline import Spline
-from ..gauss_map.chains import Segment, continued, joined
+from ..gauss_map.chains import Segment, chained
 from ..gauss_map.polylines import dense
 from ..gauss_map.sign_changes import sign_changes
 from .places import ON_SIDE, uv_at, wrapped
@@ -58,14 +58,17 @@ def _lines(part: TrimPart, spline: Spline) -> list[Array]:
         closed = [np.concatenate([x, x[:1]]) for x in polygons]
         return [(x - low) / (high - low) for x in closed]
     if isinstance(part, Known):
-        return [line for line, _ in joined(list(_edges_of_known(part, spline.boundary)))]
+        segments = list(_edges_of_known(part, spline.boundary))
+        chains = chained([x[:2] for x in segments])
+        lines = [[segments[k][2][:: -1 if back else 1] for k, back in chain] for chain, _ in chains]
+        return [_continued(x, spline.boundary) for x in lines]
     return [_refined(line, part, spline) for line in _changes(part, spline)]
 
 
 def _with_crossings(line: Array, boundary: Boundary) -> Array:
     """Insert the points, exactly on open sides of the domain, where a polyline crosses them."""
     for axis, ends in enumerate(boundary):
-        if ends[0] in ("periodic", "mirrored"):
+        if closes(ends):
             continue
         for side in (0.0, 1.0):
             line[np.abs(line[:, axis] - side) <= ON_SIDE, axis] = side
@@ -90,7 +93,7 @@ def _is_border(line: Array, part: TrimPart, others: list[TrimPart], spline: Spli
     aside *= (ASIDE / np.where(lengths > 0.0, lengths, 1.0))[:, None]
     found = lengths > 0.0
     for axis, ends in enumerate(spline.boundary):
-        if ends[0] not in ("periodic", "mirrored"):
+        if not closes(ends):
             found &= (middles[:, axis] > ON_SIDE) & (middles[:, axis] < 1.0 - ON_SIDE)
     places = middles + aside, middles - aside
     if polygons_of(part):
@@ -121,10 +124,10 @@ def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
     """Yield the edges between patches that depend on missing points and patches that do not."""
     m, n = part.cells
     known = part.patches.reshape(m, n, 4)
-    closes = [ends[0] == "periodic" for ends in boundary]
 
-    def place(i: float, j: float) -> tuple[float, float]:
-        return (i % m if closes[0] else i, j % n if closes[1] else j)
+    def place(i: float, j: float) -> tuple[float, ...]:
+        at = wrapped(np.array([i / m, j / n]), boundary)
+        return tuple(np.rint(at * (2 * m, 2 * n)).tolist())
 
     def segment(*ends: tuple[float, float]) -> Segment:
         return place(*ends[0]), place(*ends[1]), np.array(ends) / (m, n)
@@ -141,7 +144,7 @@ def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
             last = (-1, slice(None)) if axis == 0 else (slice(None), -1)
             following[last] = following[last][::-1]
         differs = known[..., first] != following
-        if end not in ("periodic", "mirrored"):
+        if not closes((end,)):
             differs[(-1, slice(None)) if axis == 0 else (slice(None), -1)] = False
         for i, j in np.argwhere(differs).tolist():
             yield segment(
@@ -155,18 +158,35 @@ def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
 def _changes(part: TrimPart, spline: Spline) -> list[Array]:
     """Return the polylines on which a condition changes: between nodes of a grid, by bisection."""
     counts = np.clip(NODES_A_CELL * np.array(spline.cells), FEWEST, MOST)
-    in_u, in_v = ("periodic" if x == "periodic" else "open" for x, _ in spline.boundary)
+    (in_u, _), (in_v, _) = spline.boundary
     nodes = np.moveaxis(np.indices(tuple((counts + 1).tolist())), 0, -1) / counts
     inside = part.contains(_uv(nodes.reshape(-1, 2), spline)).reshape(nodes.shape[:2])
     for axis, kind in enumerate((in_u, in_v)):
         rows = np.swapaxes(inside, 0, axis)
-        rows[-1] = rows[0] if kind == "periodic" else rows[-1]
+        if closes((kind,)):
+            rows[-1] = rows[0, :: -1 if kind == "mirrored" else 1]
 
     def places(low: Indices, high: Indices) -> Array:
         return _bisected(low / counts, high / counts, inside[tuple(low.T)], part, spline)
 
     lines = sign_changes(np.where(inside, 1.0, -1.0), (in_u, in_v), places)
-    return [continued(parts) for parts, _ in lines]
+    found = [_distinct(_continued(parts, spline.boundary)) for parts, _ in lines]
+    return [x for x in found if len(x) > 1]
+
+
+def _distinct(line: Array) -> Array:
+    """Return a polyline (k, 2) without points that nearly repeat the one before, as at a node."""
+    found = line[np.append(True, (np.abs(np.diff(line, axis=0)) > ON_SIDE).any(axis=1))]
+    found[-1] = line[-1]
+    return found
+
+
+def _continued(parts: Sequence[Array], boundary: Boundary) -> Array:
+    """Join polylines (k, 2), each shifted across seams to the end of the previous one."""
+    line = [parts[0]]
+    for part in parts[1:]:
+        line.append(wrapped(part, boundary, line[-1][-1], together=True)[1:])
+    return np.concatenate(line)
 
 
 def _refined(line: Array, part: TrimPart, spline: Spline) -> Array:
@@ -178,7 +198,7 @@ def _refined(line: Array, part: TrimPart, spline: Spline) -> Array:
         aside = np.stack([-along[:, 1], along[:, 0]], axis=1) / 2.0
         low, high = middles - aside, middles + aside
         for axis, ends in enumerate(spline.boundary):
-            if ends[0] not in ("periodic", "mirrored"):
+            if not closes(ends):
                 low[:, axis], high[:, axis] = (np.clip(x[:, axis], 0.0, 1.0) for x in (low, high))
         left, right = (part.contains(_uv(x, spline)) for x in (low, high))
         here = left != right

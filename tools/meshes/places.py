@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...generated.mesh import border_spacing
 from ...runtime.base.formula_calls import python_function
-from ...runtime.domain.domain import Boundary, BoundaryCondition
+from ...runtime.domain.domain import Boundary, BoundaryCondition, closes
 from ...runtime.spline.spline import Spline
 from ...runtime.spline.tips import collapsed_sides
 
@@ -26,20 +26,25 @@ ON_SIDE = 1e-9
 NEAREST = 4
 
 
-def wrapped(positions: Array, boundary: Boundary, around: Array | None = None) -> Array:
+def wrapped(
+    positions: Array, boundary: Boundary, around: Array | None = None, together: bool = False
+) -> Array:
     """Return positions (..., 2), shifted across seams into the unit square.
 
-    If `around` is given, they are shifted to be nearest to these positions instead.
+    If `around` is given, they are shifted to be nearest to these positions instead; if they are to
+    stay `together`, only the first one is nearest.
     """
     positions = positions.copy()
-    for axis, (end, _) in enumerate(boundary):
-        if end in ("periodic", "mirrored"):
-            along = positions[..., axis]
+    for axis in sorted((0, 1), key=lambda k: boundary[k][0] != "mirrored"):
+        if closes(boundary[axis]):
+            along, other = positions[:1, axis] if together else positions[..., axis], 1 - axis
             turns = np.floor(along) if around is None else np.rint(along - around[..., axis])
             positions[..., axis] -= turns
-            if end == "mirrored":
+            if boundary[axis][0] == "mirrored":
                 odd = np.mod(turns, 2.0) == 1.0
-                positions[odd, 1 - axis] = 1.0 - positions[odd, 1 - axis]
+                positions[..., other] = np.where(
+                    odd, 1.0 - positions[..., other], positions[..., other]
+                )
     return positions
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import shapely
 from gaussmap.tools.meshes.border import border_lines
+from gaussmap.tools.meshes.places import wrapped
 
 from ...shapes import circle
 
@@ -36,6 +37,10 @@ PARTS = {
     "cap": (gm.surfaces.sphere().trimmed(within=lambda u, v: v > 0.5), 1),
     "band": (gm.surfaces.cylinder().trimmed(within=lambda u, v: np.abs(v) < 0.3), 0),
     "moebius": (gm.surfaces.moebius_band().trimmed(within=lambda u, v: np.abs(u - 3) > 0.4), 1),
+    "across a mirrored seam": (
+        gm.surfaces.moebius_band().trimmed(within=lambda u, v: v * np.cos(u / 2) > -0.3),
+        0,
+    ),
     "grid": (gm.Surface.from_grid(HEIGHTS, spacing=(0.05, 0.05)), 0),
 }
 
@@ -54,13 +59,18 @@ def area(spline, count=600):
 
 
 @pytest.mark.parametrize("name", PARTS)
-@pytest.mark.quick_for("grid", "cap", "band")
+@pytest.mark.quick_for("grid", "cap", "band", "across a mirrored seam")
 def test_a_mesh_ends_at_the_border(name):
     surface, characteristic = PARTS[name]
     spline = gm.fit(surface, None if name == "grid" else (16, 16))
     samples = gm.sample(spline, 300)
     mesh = samples.mesh()
     assert mesh.euler_characteristic == characteristic
+    a, b, c = np.swapaxes(mesh.vertices[mesh.triangles], 0, 1)
+    heights = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    assert (
+        heights > 1e-6 * np.square(np.stack([a - b, b - c, c - a])).sum(axis=2).max(axis=0)
+    ).all()
     ends = np.unique(mesh.boundary_edges)
     assert np.count_nonzero(mesh.sample_index[ends] >= 0) <= 6  # that are so close to the border
     ends = ends[mesh.sample_index[ends] < 0]
@@ -85,6 +95,18 @@ def test_weights_of_a_disc():
     assert weights @ samples.points[:, 0] == pytest.approx(np.pi * 0.16 * 0.5, rel=2e-3)
     square = ((samples.points[:, :2] - 0.5) ** 2).sum(axis=1)
     assert weights @ square == pytest.approx(np.pi * 0.4**4 / 2.0, rel=1e-2)
+
+
+def test_a_border_through_nodes_of_the_grid_is_whole():
+    surface = TORUS.trimmed(within=lambda u, v: np.cos(u) + np.cos(v) > 0.0)
+    assert len(border_lines(gm.fit(surface, (128, 128)))) == 1
+
+
+def test_positions_around_another_one():
+    """A shift along v, which is mirrored, comes before one along u."""
+    bottle = gm.Surface.from_callable(plane, PLANE.domain, (True, "mirrored"))
+    found = wrapped(np.array([[0.9, 0.95]]), bottle.boundary, np.array([[0.1, 0.05]]))
+    np.testing.assert_allclose(found, [[0.1, -0.05]], atol=1e-15)
 
 
 def test_borders_are_those_of_all_conditions():
