@@ -14,7 +14,7 @@ from ..base.errors import InputError, shown
 from ..base.repeats import repeated
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
-from .domain import Boundary, Domain, closes
+from .domain import Boundary, Domain, brought_inside, closes
 from .kernels import trim as kernels
 
 # Segments are sorted into a square grid of cells. It has about this many cells for each segment,
@@ -30,6 +30,10 @@ POINTS_AT_A_TIME = 1 << 14
 MOST_PERIODS = 100
 # The number of pairs of a box and a segment in one batch.
 PAIRS_AT_A_TIME = 1 << 20
+# Loops overlap their copies if a point beside them, at this distance relative to the domain, is
+# inside twice; a line across the domain has at least SIDES such points.
+BESIDE, SIDES = 1e-6, 64
+CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
 # Points on an open side of the domain are moved inwards by this part of the domain.
 INSIDE = 1e-13
 
@@ -57,6 +61,22 @@ class Loops:
 
         list(over_ranges(work, len(uv), POINTS_AT_A_TIME, threads))
         return inside
+
+    def overlap(self) -> bool:
+        """Return whether loops and their copies, shifted by whole periods, have common points."""
+        low, high = np.array(self.domain).T
+        around = [closes(ends) for ends in self.boundary]
+        if not ((self.box[1] - self.box[0] > high - low) & around).any():
+            return False
+        border = np.concatenate([_steps(x, (high - low) / SIDES) for x in self.polygons])
+        near = border + BESIDE * (high - low) * CORNERS[:, None]
+        u, v = near.reshape(-1, 2).T.copy()
+        near = np.stack(brought_inside(u, v, self.domain, self.boundary), axis=1)
+        (cells, shifts), places = self._cells, np.ascontiguousarray(self._inwards(near))
+        inside = np.empty((len(shifts), len(near)), dtype=np.bool_)
+        for k in range(len(shifts)):
+            kernels.find_inside(cells, shifts[k : k + 1], places, 0, len(places), inside[k])
+        return bool((inside.sum(axis=0) > 1).any())
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags:
         """Return a mask (m, n) of the cells of a grid that the polygons may intersect."""

@@ -291,7 +291,13 @@ def trimmed_by(
     """
     parts: list[TrimPart] = []
     if loops is not None:
-        parts.append(checked_loops(loops, domain, boundary))
+        polygons = checked_loops(loops, domain, boundary)
+        if polygons.overlap():
+            raise InputError(
+                "the loops run over more than one period, and overlap their copies beyond the "
+                "seam; cut them at the seam."
+            )
+        parts.append(polygons)
     if within is not None:
         if not callable(within):
             raise InputError(f"within must be callable as f(u, v), not {shown(within)}.")

@@ -527,7 +527,7 @@ class Surface(SurfaceValues):
             inside by the even-odd rule, so that a polygon in another one is a hole. Or a Polygon or
             MultiPolygon of Shapely, or any other object with the same ``__geo_interface__``. Loops
             may run beyond the seam of a periodic direction: a point is inside if it, or a copy
-            shifted by whole periods, is.
+            shifted by whole periods, is. The copies may not overlap.
         within : callable, optional
             ``within(u, v)`` takes two float64 arrays (k,) of parameters in the domain, and returns
             booleans (k,). Regions smaller than an eighth of a patch of the spline may be missed. If
@@ -544,8 +544,9 @@ class Surface(SurfaceValues):
         Raises
         ------
         InputError
-            For loops with fewer than 3 points, with NaN or infinity, of another shape, or more than
-            100 periods away; for a predicate that is not callable; or if neither is given.
+            For loops with fewer than 3 points, with NaN or infinity, of another shape, more than
+            100 periods away, or overlapping their copies; for a predicate that is not callable; or
+            if neither is given.
 
         Examples
         --------

@@ -109,8 +109,8 @@ def test_faces_and_trimmed_surfaces_have_tips() -> None:
         found.append(rows[np.lexsort(rows.round(9).T)])
     np.testing.assert_allclose(found[0], found[1], rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(found[0], found[2], rtol=0.0, atol=1e-12)
-    for low, tips in ((-9.0, True), (0.1, False)):  # with a slit
-        cut = surface.trimmed([[(low, 0.5), (6.2, 0.5), (6.2, 9.0), (low, 9.0)]])
+    for low, high, tips in ((0.0, 2.0 * np.pi, True), (0.1, 6.2, False)):  # with a slit
+        cut = surface.trimmed([[(low, 0.5), (high, 0.5), (high, 9.0), (low, 9.0)]])
         components = np.unique(np.asarray(gm.GaussMap(cut).points(n).component))
         assert components.tolist() == [gm.Component.REGULAR, gm.Component.TIP][: 1 + tips]
 

@@ -171,7 +171,7 @@ def test_spline_has_the_branches_that_sampling_finds(
     torus: gm.Spline, normals: Array, is_trimmed: bool
 ) -> None:
     if is_trimmed:
-        triangle = gm.surfaces.torus().trimmed([[(1, 1), (5, 1), (3, 9)]])
+        triangle = gm.surfaces.torus().trimmed([[(1, 1), (5, 1), (3, 6)]])
         torus = replace(torus, trim=triangle.trim)
     branches = gm.SupportFunction.of_spline(torus).branches(normals)
     samples = gm.sample(torus, normals=normals)
