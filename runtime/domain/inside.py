@@ -50,9 +50,13 @@ class Inside:
         cut = np.repeat(passed.ravel(), 4)
         shares[cut] = shares_of(number[cut], FINEST)
         if not shares.any():
+            reach = next(filter(None, (getattr(part, "said", None) for part in trim.parts)), None)
             raise SurfaceError(
-                f"the trim of surface {name!r}, or the reach, leaves nothing of it, or "
-                "less than a part of a cell of its spline; is it inside the domain?"
+                f"the trim of surface {name!r} leaves nothing of it, or less than a part of a cell "
+                "of its spline; is it inside the domain?"
+                if reach is None
+                else f"surface {name!r} has no point in reach, or only within a part of a cell of "
+                f"its spline: {reach}."
             )
         return cls(shares, cut | (shares > 0.0))
 

@@ -28,11 +28,13 @@ AROUND = 1.25
 class InReach:
     """The condition that the normal is in a cap.
 
-    `normals` returns the unit normals (k, 3) at parameters (k, 2), and 0 or NaN at singular points.
+    `normals` returns the unit normals (k, 3) at parameters (k, 2), and 0 or NaN at singular points;
+    `said` are the conditions of the whole reach, in words.
     """
 
     normals: Callable[[Array], Array]
     cap: Cap
+    said: str
 
     def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return whether the normals at points (k, 2) are in the cap."""
@@ -73,11 +75,12 @@ class InReach:
 class OnPoints:
     """A condition on points of a surface, as a condition on parameters.
 
-    `jets` returns the 2-jets (k, 6, 3) of the surface at u and v (k,).
+    `jets` returns the 2-jets (k, 6, 3) of the surface at u and v (k,). `said` is as in `InReach`.
     """
 
     jets: Evaluated
     condition: Condition
+    said: str
 
     def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return whether the condition holds at the points of parameters (k, 2)."""
@@ -106,7 +109,7 @@ def reached(
     whole: Whole, normals: Callable[[Array], Array], jets: Evaluated, reach: Reach
 ) -> Whole:
     """Return the part of a spline or a surface that is in a reach."""
-    caps = (InReach(normals, cap) for cap in reach._caps)
+    caps = (InReach(normals, cap, reach._said()) for cap in reach._caps)
     whole = replace(whole, trim=trimmed(whole.trim, whole.domain, whole.boundary, *caps))
     return with_conditions(whole, jets, reach)
 
@@ -116,7 +119,7 @@ def with_conditions(whole: Whole, jets: Evaluated, reach: Reach) -> Whole:
 
     The caps of the reach, which are conditions on normals, are ignored.
     """
-    conditions = [OnPoints(jets, x) for x in reach._conditions]
+    conditions = [OnPoints(jets, x, reach._said()) for x in reach._conditions]
     if not conditions:
         return whole
     return replace(whole, trim=trimmed(whole.trim, whole.domain, whole.boundary, *conditions))

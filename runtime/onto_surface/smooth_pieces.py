@@ -107,7 +107,11 @@ def with_area(geometries: Sequence[OnSpline]) -> list[tuple[int, OnSpline]]:
     sizes = np.array([_size_of(x, len(geometries) > 1) for x in geometries])
     real = sizes > NO_SIZE * sizes.max()
     if not real.any():
-        label = f"surface {geometries[0].spline.name!r}"
+        label, reach = f"surface {geometries[0].spline.name!r}", geometries[0].reach
+        if len(geometries) > 1 and reach is not None:
+            raise SurfaceError(
+                f"{label} and the other pieces have no point in reach: {reach._said()}."
+            )
         raise SurfaceError(
             f"{label} has no area beyond rounding: all its points lie on one curve or are one "
             'point; only the density "gauss" takes it.'

@@ -128,11 +128,15 @@ def test_terrain_meshes_and_pickles() -> None:
     assert len(pickle.loads(pickle.dumps(samples))) == 150
 
 
+ROOF = gm.Surface.from_nurbs(
+    (1, 1),
+    ([0, 0, 1, 2, 2], [0, 0, 1, 1]),
+    [[[x, y, x * (2 - x)] for y in (0, 1)] for x in (0, 1, 2)],
+)
+
+
 def test_pieces_of_a_nurbs_keep_to_the_reach() -> None:
-    knots = np.array([0.0, 0.0, 0.5, 1.0, 1.0])
-    net = np.array([[[0, y, 0], [1, y, 1], [2, y, 0]] for y in (0.0, 1.0)]).transpose(1, 0, 2)
-    roof = gm.Surface.from_nurbs((1, 1), (knots, np.array([0.0, 0.0, 1.0, 1.0])), net)
-    one_side = gm.sample(roof, 50, density="uniform", reach=((-1, 0, 1), 10.0))
+    one_side = gm.sample(ROOF, 50, density="uniform", reach=((-1, 0, 1), 10.0))
     assert (one_side.points[:, 0] <= 1.0).all()
     assert len(one_side) == 50
     assert one_side.coverage() < 0.5
@@ -152,9 +156,14 @@ def test_unusable_reaches(reach: Any, message: str) -> None:
     refused(message, gm.sample, "torus", 100, reach=reach)
 
 
-def test_nothing_in_reach() -> None:
-    with pytest.raises(gm.errors.SurfaceError, match="reach"):
-        gm.sample("wavy_graph", 100, reach=((0, 0, -1), 10.0))
+@pytest.mark.parametrize("surface", ["wavy_graph", ROOF])
+def test_nothing_in_reach(surface: Any) -> None:
+    for reach, said in (
+        (((0, 0, -1), 10.0), "normals within 10°"),
+        (gm.Reach(from_edges=9), "9 from"),
+    ):
+        message = f"no point in reach.*: .*{said}"
+        refused(message, gm.sample, surface, 99, reach=reach, error=gm.errors.SurfaceError)
 
 
 def test_grids_have_no_reach() -> None:

@@ -50,9 +50,10 @@ def space_of(
         pieces, failed = pieces_of(part.faces, reach)
     if not pieces:
         if reach is not None and len(failed) < len(part.faces):
+            has_cap = any(cap.angle < 180.0 for cap in reach._caps)
+            bore = " (normals of the wall of a bore are at 90° to its axis)" if has_cap else ""
             raise SurfaceError(
-                f"part {part.name!r} has no point in reach: {reach._said(part.unit)} (normals of "
-                "the wall of a bore are at 90° to its axis)."
+                f"part {part.name!r} has no point in reach: {reach._said(part.unit)}{bore}."
             )
         reason = f": {next(iter(failed.values()))}" if failed else "."
         raise SurfaceError(f"part {part.name!r} has no face that can be sampled{reason}")
