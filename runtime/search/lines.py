@@ -175,18 +175,18 @@ def nodes_of(spline: AnySpline, patches: Indices) -> tuple[Indices, Flags]:
         return numbers[patches], border
     cell, turn = np.divmod(patches, 4)
     corners = np.concatenate([OUTER, np.zeros((4, 1, 2))], axis=1)
-    middles = 0.5 * (corners[:, NEXT] + corners[:, LAST])
-    centres = np.stack(np.divmod(cell, spline.cells[1]), axis=1)[:, None] + 0.5
-    at = (4.0 * (centres + np.concatenate([corners, middles], axis=1)[turn])).astype(np.int64)
-    border = np.zeros(at.shape[:2], np.bool_)
+    places = np.concatenate([corners, (corners[:, NEXT] + corners[:, LAST]) / 2.0], axis=1)
+    shifts = np.moveaxis(4.0 * (places + 0.5), 2, 0).astype(np.int64)
+    at = 4 * np.stack(np.divmod(cell, spline.cells[1]))[:, :, None] + shifts[:, turn]
+    border = np.zeros(at[0].shape, np.bool_)
     for axis, (ends, count) in enumerate(zip(spline.boundary, spline.cells, strict=True)):
         for end, kind in zip((0, 4 * count), ends, strict=True):
-            here = at[..., axis] == end
+            here = at[axis] == end
             border |= here & (kind == "open")
-            at[here & (kind == "pole"), 1 - axis] = 0
+            at[1 - axis, here & (kind == "pole")] = 0
         if ends[0] == "periodic":
-            at[..., axis] %= 4 * count
-    return at @ [4 * spline.cells[1] + 1, 1], border
+            at[axis] %= 4 * count
+    return at[0] * (4 * spline.cells[1] + 1) + at[1], border
 
 
 def _connected(lines: Lines, nodes: Indices) -> Indices:
@@ -195,9 +195,8 @@ def _connected(lines: Lines, nodes: Indices) -> Indices:
     Lines of one normal are connected if they are in one patch, or touch the same corner or edge.
     """
     row, place = np.nonzero(lines.touched)
-    _, own = np.unique(lines.keys, return_inverse=True)
-    _, shared = np.unique(lines.keys[row] >> 32 << 32 | nodes[row, place], return_inverse=True)
+    shared = lines.keys[row] >> 32 << 32 | nodes[row, place]
+    _, other = np.unique(np.concatenate([~lines.keys, shared]), return_inverse=True)
     count = len(lines.keys)
     one = np.concatenate([np.arange(count), row])
-    other = count + np.concatenate([own, own.max(initial=-1) + 1 + shared])
-    return linked(count + len(other), one, other)[1][:count]
+    return linked(count + len(other), one, count + other)[1][:count]

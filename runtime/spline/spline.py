@@ -146,8 +146,10 @@ class Spline(PatchSpline, Methods):
         """Return the coefficients (k, 9, 3) that NEIGHBOURS lists, for the patches `rows`."""
         cell, turn = np.divmod(rows, 4)
         i, j = np.divmod(cell, self.cells[1])
-        steps = NEIGHBOURS[turn]
-        return self.coefficients[i[:, None] + 1 + steps[..., 0], j[:, None] + 1 + steps[..., 1]]
+        width = self.cells[1] + 2
+        steps = width * NEIGHBOURS[..., 0] + NEIGHBOURS[..., 1]
+        around = ((i + 1) * width + j + 1)[:, None] + steps[turn]
+        return self.coefficients.reshape(-1, 3).take(around, axis=0)
 
     def _patch(self, rows: NDArray[np.int64] | slice = slice(None)) -> Patch:
         """Return the vectors of the patches `rows` times `scale`, for formulas."""
