@@ -28,12 +28,15 @@ from ..surface.surface import Surface
 from ..tape.kernels.points import Tape
 from ..tape.tapes import bounds_over_boxes, jets_of
 
-# Normals are known up to the angle SMOOTH. Where n·x_ww is 0, too, zeros of n·x_w are known up to
-# the root of that. Therefore points of one crease and normal that are closer than APART, relative
-# to the length of the crease in w, are one component. The signs of n·x_w before and after a
-# component are taken at the distance APART from the component.
+# Along creases, normals are known up to the angle SMOOTH. Where n·x_ww is 0, too, zeros of n·x_w
+# are known up to the root of that. Therefore points of one crease and normal that are closer than
+# APART, relative to the length of the crease in w, are one component. The signs of n·x_w before and
+# after a component are taken at the distance APART from the component.
 SMOOTH = 1e-9
 APART = math.sqrt(SMOOTH)
+# The normals of both sides are known up to the angle ROUNDING, and points with these normals up to
+# BESIDE, relative to the size of the creases.
+ROUNDING, BESIDE = 2.0**-43, 2.0**-40
 # In intervals where n·x_w has at most one zero, there are STEPS steps of Newton's method. Other
 # intervals, and those where these steps do not settle, are halved. If a normal has more than MANY
 # of them, as on a straight crease, only those with a zero in the middle are kept.
@@ -203,7 +206,7 @@ class Creases:
         lengths = [np.linalg.norm(x, axis=1) for x in across]
         heights = [np.einsum("kjx,kx->jk", x, given) for x in jets]
         slopes = [x[1 + axis, index] for x in heights]
-        unsures = [np.abs(x) <= SMOOTH * y for x, y in zip(slopes, lengths, strict=True)]
+        unsures = [np.abs(x) <= ROUNDING * y for x, y in zip(slopes, lengths, strict=True)]
         facing = sum(
             np.einsum("kx,kx->k", unit_or_zero(np.cross(x[:, 1], x[:, 2])), given) for x in jets
         )
@@ -244,8 +247,9 @@ class Creases:
         special = found.normal_index[(kinds != Component.REGULAR) & (kinds != Component.CREASE)]
         for k in np.flatnonzero(at.unsure | np.isin(at.numbers, special)).tolist():
             own = (found.normal_index == at.numbers[k]) & (kinds != Component.CREASE)
-            near = (np.abs(found.points[own] - at.points[k]) <= APART * size).all(axis=1)
             regular = kinds[own] == Component.REGULAR
+            reach = size * np.where(regular, BESIDE, APART)
+            near = np.abs(found.points[own] - at.points[k]).max(axis=1) <= reach
             if (near & ~regular).any() or (at.unsure[k] & (kinds[own] == Component.CURVE)).any():
                 keep[k] = np.isnan(at.degrees[k])
             elif at.unsure[k]:

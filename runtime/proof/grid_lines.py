@@ -50,19 +50,19 @@ def lines_of(tape: Tape, axis: int, ends: Array, count: int) -> Array:
     return np.append(np.concatenate(parts), high)
 
 
-def joints_of(tape: Tape, axis: int, domain: Domain, boundary: Boundary) -> Array:
-    """Return the values of u (axis 0) or v where derivatives may jump, but the normal does not.
+def joints_and_creases(
+    tape: Tape, axis: int, domain: Domain, boundary: Boundary
+) -> tuple[Array, Array]:
+    """Return the values of u (axis 0) or v of joints, and those of creases.
 
-    The seam of a periodic spline may be such a line. The normals on both sides of a line are
-    compared at sampled points.
+    Derivatives may jump at both, the normal only at creases. The seam of a periodic spline may be
+    such a line. The normals on both sides of a line are compared at sampled points.
     """
     jumps = jumps_of(tape, axis, *domain[axis]).tolist()
-    smooth = [
-        above
-        for below, above in _with_seam(tape, axis, domain, boundary, jumps)
-        if _turning(tape, axis, domain, below, above) <= SMOOTH
-    ]
-    return np.array(smooth, dtype=np.float64)
+    lines = _with_seam(tape, axis, domain, boundary, jumps)
+    smooth = [_turning(tape, axis, domain, *x) <= SMOOTH for x in lines]
+    above, is_joint = np.array([x for _, x in lines]), np.array(smooth, np.bool_)
+    return above[is_joint], above[~is_joint]
 
 
 def creases_of(

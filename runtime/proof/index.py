@@ -29,12 +29,12 @@ from ..tape.kernels.points import LANES, Tape
 from .apexes import Apex, apexes_of
 from .components import Undecided, boxes_of, components_of, with_kinds
 from .discs import PoleDisc
-from .grid_lines import joints_of, lines_of
+from .grid_lines import joints_and_creases, lines_of
 from .kernels.answers import BORDER, BOX, Answers, merge_places
 from .kernels.cell_bounds import OPEN, REACH, WIDE, CellBounds, Work, cut_cells
 from .kernels.components import indices_around
 from .kernels.discs import decide_discs
-from .kernels.evaluated_pairs import Index, Joints, Outcome, Tiles, evaluate_pairs
+from .kernels.evaluated_pairs import Index, Lines, Outcome, Tiles, evaluate_pairs
 from .kernels.places import Boxes, decide_normals
 from .kernels.sorting import Sorted, count_places, order_places, put_places, start_normals
 from .poles import Cap, poles_of
@@ -205,8 +205,9 @@ class ProvedIndex:
             return None
         of_discs = (x.cell for x in poles.discs)
         both = CellBounds(*map(np.concatenate, zip(cut, *of_discs, strict=True)))
-        joints = Joints(*(joints_of(tape, k, domain, boundary) for k in (0, 1)))
-        index = Index(both, len(cut.place), joints)
+        jumps = [joints_and_creases(tape, k, domain, boundary) for k in (0, 1)]
+        joints, creases = (Lines(*x) for x in zip(*jumps, strict=True))
+        index = Index(both, len(cut.place), joints, creases)
         pieces = _pieces_of(index)
         lists = listed(pieces.cones)
         apexes = apexes_of(tape, domain, box[4:])

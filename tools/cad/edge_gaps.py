@@ -101,13 +101,14 @@ class AtEdges(NamedTuple):
 class EdgeGaps:
     """Edges of a part with gaps wider than `GAP`, straight in the parameters of both faces.
 
-    Neither face is developable. Edge i goes from `starts`[i] (2, 2) by `steps`[i] (2, 2) on both
-    `pieces`[i] of the space; it may be `closed`. The faces are on the sides `inward`[i] (2,) of it:
-    1 is that of N × t. Normals of the first face at PLACES places of each edge are in a `tree`, and
-    in `cells` of directions. At each place, `spread` (3,) is the change of the normal from place to
-    place, and `bends` the length of the change of this change. Normals in gaps are within `slack`
-    of those of their edge, and within `reach` of some in the tree. Lines inside of a face are
-    edges, too, with the same piece twice. Edges end or cross at `corners` (C, 3).
+    Creases inside of a face are such edges, too, with the same piece twice; they are `exact`: since
+    both sides are searched without a tolerance, gaps of all widths count. Neither face is
+    developable. Edge i goes from `starts`[i] (2, 2) by `steps`[i] (2, 2) on both `pieces`[i] of the
+    space; it may be `closed`. The faces are on the sides `inward`[i] (2,) of it: 1 is that of
+    N × t. Normals of the first face at PLACES places of each edge are in a `tree`, and in `cells`
+    of directions. At each place, `spread` (3,) is the change of the normal from place to place, and
+    `bends` the length of the change of this change. Normals in gaps are within `slack` of those of
+    their edge, and within `reach` of some in the tree. Edges end or cross at `corners` (C, 3).
     """
 
     space: PartSpace
@@ -115,6 +116,7 @@ class EdgeGaps:
     starts: Array
     steps: Array
     inward: Array
+    exact: Flags
     closed: Flags
     normals: Array
     spread: Array
@@ -147,7 +149,7 @@ class EdgeGaps:
         radii = np.maximum(*(largest_radius(*x.curvatures.T) for x in sides))
         size = float(np.ptp(sides[0].vectors[:, 0], axis=0).max())
         bent = radii.reshape(-1, MEASURED).min(axis=1) <= FLAT * size
-        some = ((gaps > GAP) & (gaps <= WIDEST)).any(axis=1) & bent
+        some = ((lines.exact[:, None] | (gaps > GAP)) & (gaps <= WIDEST)).any(axis=1) & bent
         lines, gaps = _Lines._make(x[some] for x in lines), gaps[some]
         inward = np.stack([_inward(space, lines, k) for k in (0, 1)], axis=1)
         known = (inward != 0.0).all(axis=1)
@@ -181,8 +183,9 @@ class EdgeGaps:
         for step in np.indices((3, 3, 3)).reshape(3, -1, 1).swapaxes(0, 1) - 1:
             cells[tuple(around + step)] = True
         return cls(
-            space, pieces, starts, steps, inward, closed, places.normals, spread, bends,
-            slack, float(reach.max()), tree_of(places.normals), cells, _corners(space, lines),
+            space, pieces, starts, steps, inward, lines.exact, closed, places.normals, spread,
+            bends, slack, float(reach.max()), tree_of(places.normals), cells,
+            _corners(space, lines),
         )  # fmt: skip
 
     def beside_corners(self, points: Array, reach: Array) -> Flags:
@@ -198,7 +201,7 @@ class EdgeGaps:
         found = self._solved(np.tile(owner, 2), sides, np.tile(shares, 2), np.tile(given, (2, 1)))
         one, other = (_Side._make(x[sides == k] for x in found) for k in (0, 1))
         gaps = np.linalg.norm(other.normals - one.normals, axis=1)
-        near = (gaps > GAP) & (gaps <= WIDEST)
+        near = (self.exact[owner] | (gaps > GAP)) & (gaps <= WIDEST)
         for x in (one, other):
             near &= np.linalg.norm(x.normals - given, axis=1) <= gaps + TURNED
         settled = np.maximum(one.off, other.off) <= SETTLED
@@ -305,6 +308,7 @@ class _Lines(NamedTuple):
     starts: Array
     steps: Array
     axes: Indices
+    exact: Flags
     places: Array
 
 
@@ -322,7 +326,8 @@ def _between_faces(space: PartSpace) -> _Lines:
     length = np.linalg.norm(along, axis=2).min(axis=1)
     keep = (off <= STRAIGHT * length) & (length > 0.0)
     places = np.rint((last - first)[:, None] * SHARES).astype(np.int64) + first[:, None]
-    found = edges.pieces, starts, steps, np.full(len(edges), -1), points[places]
+    inside = np.full(len(edges), -1), np.zeros(len(edges), np.bool_)
+    found = edges.pieces, starts, steps, *inside, points[places]
     return _Lines._make(x[keep] for x in found)
 
 
@@ -342,7 +347,10 @@ def _inside_faces(space: PartSpace) -> Iterator[_Lines]:
                     high - low,
                 )
                 places = starts[:, None] + SHARES[:, None, None] * steps[:, None]
-                yield _Lines(np.array([[k, k]]), starts, steps, np.array([axis]), places)
+                # An open seam of a closed face is searched as an edge between two faces is.
+                exact = line[0] < line[1] or surface.boundary[axis][0] == "periodic"
+                found = starts, steps, np.array([axis]), np.array([exact]), places
+                yield _Lines(np.array([[k, k]]), *found)
 
 
 def _corners(space: PartSpace, lines: _Lines) -> Array:

@@ -42,7 +42,28 @@ from .cell_bounds import (
     thirds_of,
     write_cells,
 )
-from .pairs import distance, forms_at, is_beyond, most_of, newton
+from .pairs import (
+    DETERMINANT,
+    HARD,
+    HU,
+    HV,
+    MORE,
+    ONE,
+    RADIUS,
+    STATE,
+    U0,
+    V0,
+    S,
+    T,
+    bound_pairs,
+    distance,
+    forms_at,
+    improve_pairs,
+    is_beyond,
+    load_pair,
+    most_of,
+    newton,
+)
 
 # What is known of a box: nothing, or whether it contains one point with the normal or none.
 UNDECIDED, DECIDED = range(2)
@@ -115,22 +136,34 @@ def ends_of_parts(lines, period, low, high, ends):
 
 
 @loop
-def write_parts(tape, work, tile, joints, domain, hull, ends):
-    """Write bounds over the parts of a grown box to a tile.
+def write_blocks(creases, domain, hull, blocks):
+    """Write the ends of the blocks into which creases cut a hull, after growing it.
 
-    Returns the numbers of parts along u and along v.
+    Returns the numbers of blocks along u and along v, and whether the grown hull is one block that
+    ends at no crease.
     """
     grown_u = max(GROWN * (hull[1] - hull[0]), LEAST * (domain[1] - domain[0]))
     grown_v = max(GROWN * (hull[3] - hull[2]), LEAST * (domain[3] - domain[2]))
-    along = ends_of_parts(joints.u, domain[4], hull[0] - grown_u, hull[1] + grown_u, ends[0])
-    across = ends_of_parts(joints.v, domain[5], hull[2] - grown_v, hull[3] + grown_v, ends[1])
-    for i in range(along):
-        for j in range(across):
-            k = i * across + j
-            place = tile.place[k]
-            place[0], place[2] = middle_and_half(ends[0, i], ends[0, i + 1])
-            place[1], place[3] = middle_and_half(ends[1, j], ends[1, j + 1])
-            tile.noise[k, REACH] = 0.0
+    u0, u1, v0, v1 = hull[0] - grown_u, hull[1] + grown_u, hull[2] - grown_v, hull[3] + grown_v
+    along = ends_of_parts(creases.u, domain[4], u0, u1, blocks[0])
+    across = ends_of_parts(creases.v, domain[5], v0, v1, blocks[1])
+    in_u = blocks[0, 0] == u0 and blocks[0, 1] == u1
+    return along, across, in_u and blocks[1, 0] == v0 and blocks[1, 1] == v1
+
+
+@loop
+def write_parts(tape, work, tile, joints, domain, blocks, i, j, ends):
+    """Write bounds over the parts of block i, j to a tile.
+
+    Returns the numbers of parts along u and along v.
+    """
+    along = ends_of_parts(joints.u, domain[4], blocks[0, i], blocks[0, i + 1], ends[0])
+    across = ends_of_parts(joints.v, domain[5], blocks[1, j], blocks[1, j + 1], ends[1])
+    for k in range(along * across):
+        place, at_u, at_v = tile.place[k], k // across, k % across
+        place[0], place[2] = middle_and_half(ends[0, at_u], ends[0, at_u + 1])
+        place[1], place[3] = middle_and_half(ends[1, at_v], ends[1, at_v + 1])
+        tile.noise[k, REACH] = 0.0
     if along * across > 0:
         write_cells(tape, work, 1.0, tile, along * across)
     return along, across
@@ -503,13 +536,33 @@ def reach_at(tile, k, n, s, t, p, q):
 
 
 @loop
-def degree_on(tape, work, tile, joints, domain, hull, n, ends, path, row):
-    """Decide whether a box has no point with the normal n or exactly one; write this one to `row`.
+def solve_part(tape, work, tile, pairs, n, row):
+    """Decide whether the first part of a tile has a solution, and write it to `row`.
 
-    Returns DECIDED, or UNDECIDED if the box may have several such points; row[4] is 0 if it has
-    none.
+    The part ends at a crease, and has no joint: there is no tolerance. It has at most one solution.
     """
-    along, across = write_parts(tape, work, tile, joints, domain, hull, ends)
+    tile.noise[0, TOLERANCE_S] = tile.noise[0, TOLERANCE_T] = 0.0
+    load_pair(pairs, 0, tile, 0, n)
+    bound_pairs(pairs, 0, 1)
+    while pairs[STATE] == MORE:
+        work.u[0] = pairs[U0] + pairs[HU] * pairs[S]
+        work.v[0] = pairs[V0] + pairs[HV] * pairs[T]
+        evaluate_points(tape, work.u, work.v, 1, work.registers)
+        improve_pairs(pairs, 1, work.registers, tape.outputs, work.u, work.v)
+    if pairs[STATE] == ONE:
+        row[0], row[1], row[4] = work.u[0], work.v[0], pairs[DETERMINANT]
+        row[2], row[3] = pairs[RADIUS] * pairs[HU], pairs[RADIUS] * pairs[HV]
+    return UNDECIDED if pairs[STATE] == HARD else DECIDED
+
+
+@loop
+def degree_on(tape, work, tile, pairs, joints, domain, blocks, i, j, whole, n, ends, path, row):
+    """Decide whether block i, j has no point with the normal n or exactly one; write it to `row`.
+
+    The block is `whole` if it does not end at a crease. Returns DECIDED, or UNDECIDED if the block
+    may have several such points; row[4] is 0 if it has none.
+    """
+    along, across = write_parts(tape, work, tile, joints, domain, blocks, i, j, ends)
     if along * across == 0:
         return UNDECIDED
     row[4] = 0.0
@@ -518,12 +571,14 @@ def degree_on(tape, work, tile, joints, domain, hull, n, ends, path, row):
         return DECIDED
     if sign == 0:
         return UNDECIDED
+    row[5], row[6], row[7], row[8] = ends[0, 0], ends[0, along], ends[1, 0], ends[1, across]
+    row[BORDER] = -1.0
+    if along * across == 1 and not whole:
+        return solve_part(tape, work, tile, pairs, n, row)
     turns = winding(tile, along, across, n, path)
     if turns == 0.0:
         return DECIDED
     if turns != float(sign):
         return UNDECIDED
-    row[5], row[6], row[7], row[8] = ends[0, 0], ends[0, along], ends[1, 0], ends[1, across]
-    row[BORDER] = -1.0
     found = write_nearest(tape, work, tile, along * across, n, row)
     return DECIDED if found else UNDECIDED

@@ -32,19 +32,24 @@ from .pairs import (
 PLACE = 6
 
 
-class Joints(NamedTuple):
-    """Lines u = const (k,), v = const (l,) where derivatives may jump, but the normal does not."""
+class Lines(NamedTuple):
+    """Lines u = const (k,) and v = const (l,)."""
 
     u: NDArray[np.float64]
     v: NDArray[np.float64]
 
 
 class Index(NamedTuple):
-    """The cells of a surface, cut at joints; from index `discs` on, cells are discs at poles."""
+    """The cells of a surface; from index `discs` on, cells are discs at poles.
+
+    Cells end at joints, where derivatives may jump, but the normal does not, and at creases, where
+    the normal jumps.
+    """
 
     cells: CellBounds
     discs: int
-    joints: Joints
+    joints: Lines
+    creases: Lines
 
 
 class Tiles(NamedTuple):

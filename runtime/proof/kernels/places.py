@@ -37,7 +37,7 @@ from .cell_bounds import (
     write_patch,
 )
 from .clusters import cluster
-from .degree import DECIDED, PARTS, PATH, degree_on
+from .degree import DECIDED, PARTS, PATH, degree_on, write_blocks
 from .folds import DOUBLE, NO_PLACE, at_fold
 from .pairs import (
     DETERMINANT,
@@ -67,8 +67,8 @@ from .pairs import (
 DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19)
 # The number of boxes along a curve of solutions about doubles on each level. More than MANY boxes
 # count as a curve if their number grows by more than the factor GROWTH on TIMES consecutive levels.
-# At most MOST cells and 4 MOST boxes are processed.
-MANY, GROWTH, TIMES, MOST = 256, 1.6, 3, 1024
+# At most MOST cells and BOXES boxes are processed.
+MANY, GROWTH, TIMES, MOST, BOXES = 256, 1.6, 3, 1024, 12288
 # The columns of boxes: u, v, the index of a cell, half the widths relative to those of the cell.
 BOX_COLUMNS = 5
 # A box is cut into two if one side is more than SLENDER times as long as the other, relative to the
@@ -97,18 +97,19 @@ class Boxes(NamedTuple):
     numbers: NDArray[np.int64]
     levels: NDArray[np.int64]
     ends: NDArray[np.float64]
+    blocks: NDArray[np.float64]
     path: NDArray[np.float64]
     tile: CellBounds
 
     @classmethod
     def new(cls, cells: int) -> Boxes:
         """Return work arrays for an index with this number of cells."""
-        most = 16 * MOST + cells
+        most = 4 * BOXES + cells
         return cls(
             np.empty((most, BOX_COLUMNS)), np.empty((most, BOX_COLUMNS)), np.empty((most, 4)),
             np.empty(most, np.int64), np.empty(most, np.int64), np.zeros(ROWS * LANES),
             np.zeros(LANES, np.int64), np.array(FOLDS), np.empty((2, PARTS + 1)),
-            np.empty(PATH), CellBounds.new(LANES),
+            np.empty((2, PARTS + 1)), np.empty(PATH), CellBounds.new(LANES),
         )  # fmt: skip
 
 
@@ -233,6 +234,27 @@ def store_places(t, lanes, work, boxes, number, answers):
 
 
 @loop
+def decide_hull(tape, work, index, boxes, hull, domain, number, n, answers):
+    """Return whether the points with the normal n in a hull are known; add them to the answers."""
+    start, blocks = answers.counts[0], boxes.blocks
+    along, across, whole = write_blocks(index.creases, domain, hull, blocks)
+    for k in range(along * across):
+        at = answers.counts[0]
+        row = answers.places[at]
+        found = degree_on(
+            tape, work, boxes.tile, boxes.pairs, index.joints, domain, blocks, k // across,
+            k % across, whole, n, boxes.ends, boxes.path, row,
+        )  # fmt: skip
+        if found != DECIDED:
+            answers.counts[0] = start
+            return False
+        if row[4] != 0.0:
+            answers.numbers[at] = number
+            answers.counts[0] = at + 1
+    return along * across > 0
+
+
+@loop
 def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, answers):
     """Drop clusters of boxes that a degree or a fold decides; on the `last` level, list the rest.
 
@@ -241,29 +263,10 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
     cells, tile = index.cells, boxes.tile
     hulls = cluster(boxes.following, count, cells, domain[4:], boxes.hulls, boxes.owner)
     for i in range(hulls):
-        at = answers.counts[0]
-        if at == answers.numbers.shape[0]:
+        if answers.counts[0] + PARTS * PARTS > answers.numbers.shape[0]:
             return -1
-        row = answers.places[at]
-        if (
-            degree_on(
-                tape,
-                work,
-                tile,
-                index.joints,
-                domain,
-                boxes.hulls[i],
-                n,
-                boxes.ends,
-                boxes.path,
-                row,
-            )
-            == DECIDED
-        ):
+        if decide_hull(tape, work, index, boxes, boxes.hulls[i], domain, number, n, answers):
             boxes.fates[i] = NO_PLACE
-            if row[4] != 0.0:
-                answers.numbers[at] = number
-                answers.counts[0] = at + 1
             continue
         u0, u1, v0, v1 = boxes.hulls[i, 0], boxes.hulls[i, 1], boxes.hulls[i, 2], boxes.hulls[i, 3]
         tile.place[0, 0], tile.place[0, 1] = 0.5 * (u0 + u1), 0.5 * (v0 + v1)
@@ -380,7 +383,7 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
     if count > MOST:
         return give_up(tape, work, index, boxes, boxes.now, count, domain, number, n, answers)
     for level in range(DEEPEST + 1):
-        if count > 4 * MOST or (count > MANY and growing >= TIMES):
+        if count > BOXES or (count > MANY and growing >= TIMES):
             return give_up(tape, work, index, boxes, boxes.now, count, domain, number, n, answers)
         following = cut_boxes(tape, work, index, boxes, count, number, n, answers)
         if following < 0:

@@ -152,6 +152,32 @@ def test_a_crease_is_no_joint() -> None:
     assert len(smooth.index.joints.u) + len(smooth.index.joints.v) == 5
 
 
+@pytest.mark.parametrize(("digits", "axis", "line"), [(7, 0, 2.0), (8, 1, 1.0)])
+def test_normals_beside_a_crease(digits: int, axis: int, line: float) -> None:
+    """Between the normals of both sides, each side or none has a point; beyond them, one side."""
+    surface = turned(MERIDIAN, np.array([15.0, 20.0, 5.0]), digits)
+    along = np.linspace(0.3, 0.7, 40) + np.arange(40) % 2
+    sides = [(np.full(40, line + step), along)[:: 1 - 2 * axis] for step in (-1e-15, 1e-15)]
+    jets = [surface.jets(*x) for x in sides]
+    below, above = (unit(np.cross(x[:, 1], x[:, 2])) for x in jets)
+    assert (np.abs(above - below).max(axis=1) > 1e-9).all()
+    shares = np.array([-2.0, -0.1, 0.2, 0.7, 1.1, 2.0])[:, None, None]
+    normals = unit((below + shares * (above - below)).reshape(-1, 3))
+    known = gm.GaussMap(surface)
+    samples = known.points(normals)
+    assert not samples.report.undecided
+    np.testing.assert_array_equal(known.degree(normals), 1)
+    is_between = np.repeat((shares > 0.0) & (shares < 1.0), len(along))
+    kinds, numbers = samples.component, samples.normal_index
+    creases, regular = (
+        np.bincount(numbers[kinds == x], minlength=len(normals))
+        for x in (gm.Component.CREASE, gm.Component.REGULAR)
+    )
+    np.testing.assert_array_equal(creases, is_between)
+    np.testing.assert_array_equal(regular[~is_between], 1)
+    assert np.isin(regular[is_between], (0, 2)).all()
+
+
 def test_creases_that_meet_at_a_pole_have_no_point_there() -> None:
     """At a pole x_u is 0, and a normal that is perpendicular to x_v is not that of the surface."""
     surface = turned(MERIDIAN, np.array([3.0, 2.0, 1.0]), 6)
