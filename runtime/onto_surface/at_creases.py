@@ -332,16 +332,19 @@ class Creases:
         starts = np.append(True, ~(same & (ends[1:, 0] <= ends[:-1, 1] + slack[1:])))[: len(rows)]
         firsts = np.flatnonzero(starts)
         lasts = np.append(firsts, len(rows))[1:] - 1
-        numbers, rows = numbers[firsts], rows[firsts]
+        numbers, rows, arcs = numbers[firsts], rows[firsts], arcs[firsts]
         ends = np.stack([ends[firsts, 0], ends[lasts, 1]], axis=1)
-        # On a closed crease, the last interval may be close to the first one.
+        # On a closed crease without a corner at its ends, the last interval may be close to the
+        # first one.
         period, slack = self.lines[rows, 3], slack[firsts]
         keep = np.ones(len(rows), np.bool_)
-        begins = np.flatnonzero((period > 0.0) & (ends[:, 0] <= self.spans[rows, 0] + slack))
+        near = (ends[:, 0] <= self.spans[rows, 0] + slack) & (arcs == 0)
+        begins = np.flatnonzero((period > 0.0) & near)
         for k in begins.tolist():
             group = np.flatnonzero((numbers == numbers[k]) & (rows == rows[k]))
-            last = group[-1]
-            if last != k and ends[last, 1] >= self.spans[rows[k], 1] - slack[k]:
+            last, corners = group[-1], sum(int(rows[k] in x.lines) for x in self.corners)
+            at_end = arcs[last] == corners and ends[last, 1] >= self.spans[rows[k], 1] - slack[k]
+            if last != k and at_end:
                 ends[last, 1] = ends[k, 1] + period[k]
                 keep[k] = False
         return numbers[keep], rows[keep], ends[keep]

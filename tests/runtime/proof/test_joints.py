@@ -178,6 +178,19 @@ def test_normals_beside_a_crease(digits: int, axis: int, line: float) -> None:
     assert np.isin(regular[is_between], (0, 2)).all()
 
 
+def test_points_of_creases_on_both_sides_of_a_corner_at_the_seam() -> None:
+    """They are close to each other, but on different creases."""
+    turn = np.linalg.qr(np.array([(3.0, 1.0, 2.0), (1.0, 4.0, 1.0), (2.0, -1.0, 5.0)]))[0]
+    net = np.array([[(r * x, r * y, z) for r, z in 0.7 * CIRCLE + [2.0, 0.0]] for x, y in CIRCLE])
+    knots, weights = conics(CIRCLE), np.outer(WEIGHTS, WEIGHTS)
+    surface = gm.Surface.from_nurbs((2, 2), (knots, knots), (net @ turn.T).round(7), weights)
+    shifts = 3e-8 * np.random.default_rng(8).normal(size=(50, 3))
+    known, normals = gm.GaussMap(surface), unit(shifts - turn[:, 0])
+    listed = [x.normal for x in known.points(normals).report.undecided or ()]
+    assert len(listed) < 5
+    assert (np.delete(known.degree(normals), listed) == 0).all()
+
+
 def test_creases_that_meet_at_a_pole_have_no_point_there() -> None:
     """At a pole x_u is 0, and a normal that is perpendicular to x_v is not that of the surface."""
     surface = turned(MERIDIAN, np.array([3.0, 2.0, 1.0]), 6)
