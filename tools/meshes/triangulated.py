@@ -131,9 +131,10 @@ class Triangulated:
 def too_few(count: int, name: str) -> InputError:
     """Return the error for a mesh that cannot cover the whole surface."""
     return InputError(
-        f"the vertices on {name!r}, {count:,} in all, are too few, or leave too large gaps, for "
-        "a mesh of the whole; take more samples or normals in all directions, or leave out the "
-        "triangles across gaps, whose normals deviate by more than an angle, as with angle=60."
+        f"the vertices on {name!r}, {count:,} in all, are too few, or leave too large gaps, as at "
+        "borders of shadows, for a mesh of the whole; take more samples or normals in all "
+        "directions, or leave out triangles that deviate from normals by more than an angle, as "
+        "with angle=60."
     )
 
 
