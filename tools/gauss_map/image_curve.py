@@ -85,6 +85,8 @@ class Traced:
         share = number / parts[owner]
         chords, places = image[owner] + share[:, None] * steps[owner], owner + share
         known = np.isfinite(chords).all(axis=1)
+        if not known.any():  # as at the tip of a cone
+            return np.full(len(normals), np.inf)
         nearest = places[known][tree_of(chords[known]).query(normals)[1]]
         low, high = np.maximum(nearest - 1.0, 0.0), np.minimum(nearest + 1.0, last)
         image = np.empty((PLACES, len(normals), 3))

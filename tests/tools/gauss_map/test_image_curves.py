@@ -180,6 +180,13 @@ def test_splines_have_folds_on_edges_of_patches():
     assert all(np.abs(np.abs(x.points[:, 2]) - np.abs(exact[0, 2])).max() < 0.02 for x in folds)
 
 
+def test_a_tip_without_normals_is_no_border():
+    texts = ("u*cos(v)", "u*sin(v)", "u**2 + u")
+    flower = gm.Surface.from_sympy(texts, "uv", ((0, 1), (0, "2*pi")), periodic=(False, True))
+    slopes = np.degrees(np.arctan(3.0))  # at the other border, and the normal is vertical
+    np.testing.assert_allclose(gm.GaussMap(flower).margin([[0, 0, 1]]), slopes, atol=1e-6)
+
+
 def test_what_has_no_border_known_is_refused():
     hidden = gm.surfaces.wavy_graph().trimmed(within=lambda u, v: u > v)
     refused("trim it by loops", gm.GaussMap(hidden).border_image, error=gm.GaussmapError)
