@@ -78,6 +78,9 @@ CASES = {
     "ruled": Case(
         partial(graph, "u**2*(2 + v)"), Z, [CURVE], 0, lambda x, y, z: np.hypot(x, z), 1e-9
     ),
+    "inflections": Case(
+        partial(graph, "u**3*(2 + v)"), Z, [CURVE], 0, lambda x, y, z: np.hypot(x, z), 1e-7
+    ),
     "plane": Case(gm.surfaces.plane, Z, [CURVE], 0, lambda x, y, z: z, 1e-15),
 }  # fmt: skip
 COSINE, SINE = math.cos(0.7), math.sin(0.7)
