@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.trees import tree_of
-from ...runtime.domain.domain import brought_inside
+from ...runtime.domain.domain import brought_inside, closes
 from ...runtime.spline.spline import Spline
 from .sign_changes import sign_changes, with_borders
 
@@ -151,10 +151,10 @@ def _lines(spline: Spline, view: View) -> list[tuple[list[Array], bool]]:
         values, noise = (normals * rays).sum(axis=2), noise * np.linalg.norm(rays, axis=2)
     values[np.abs(values) <= noise] = 0.0
     kinds = spline.boundary[0][0], spline.boundary[1][0]
-    for by, kind in enumerate(kinds):  # on both sides of a seam, equal up to rounding
+    for by, pair in enumerate(spline.boundary):  # on both sides of a seam, equal up to rounding
         side = np.swapaxes(values, 0, by)
-        if kind in ("periodic", "mirrored"):
-            side[-1] = side[0] if kind == "periodic" else -side[0, ::-1]
+        if closes(pair):
+            side[-1] = side[0] if pair[0] == "periodic" else -side[0, ::-1]
     values = with_borders(values, noise, kinds)
 
     def places(low: Indices, high: Indices) -> Array:
@@ -170,14 +170,14 @@ def _with_copies(spline: Spline, ends: Array) -> tuple[Array, Indices]:
     Also return the index of the original of each segment.
     """
     which = np.arange(len(ends))
-    for axis, (kind, _) in enumerate(spline.boundary):
-        if kind not in ("periodic", "mirrored"):
+    for axis, pair in enumerate(spline.boundary):
+        if not closes(pair):
             continue
         size, middle = spline.cells[axis], ends.mean(axis=1)[:, axis]
         for shift, near in ((size, middle < 1.0), (-size, middle > size - 1.0)):
             copy = ends[: len(near)][near]
             copy[..., axis] += shift
-            if kind == "mirrored":
+            if pair[0] == "mirrored":
                 copy[..., 1 - axis] = spline.cells[1 - axis] - copy[..., 1 - axis]
             ends = np.concatenate([ends, copy])
             which = np.concatenate([which, which[: len(near)][near]])

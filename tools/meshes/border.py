@@ -139,12 +139,11 @@ def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
             yield segment((i + 0.5, j + 0.5), (i + di, j + dj))
     for axis, first, second in ((0, 1, 3), (1, 2, 0)):
         following = np.roll(known[..., second], -1, axis=axis)
-        end = boundary[axis][0]
-        if end == "mirrored":
+        if boundary[axis][0] == "mirrored":
             last = (-1, slice(None)) if axis == 0 else (slice(None), -1)
             following[last] = following[last][::-1]
         differs = known[..., first] != following
-        if not closes((end,)):
+        if not closes(boundary[axis]):
             differs[(-1, slice(None)) if axis == 0 else (slice(None), -1)] = False
         for i, j in np.argwhere(differs).tolist():
             yield segment(

@@ -12,7 +12,7 @@ from ...runtime.base.errors import InputError, shown
 from ...runtime.base.memory import check_memory
 from ...runtime.base.progress import tell
 from ...runtime.directions.unit import unit_or_zero
-from ...runtime.domain.domain import Boundary
+from ...runtime.domain.domain import Boundary, closes
 from ...runtime.onto_surface.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
 from ...runtime.spline.tips import collapsed_sides
@@ -166,7 +166,7 @@ def _characteristic(triangles: Indices, adjacent: Indices) -> int:
 
 def _characteristic_of(boundary: Boundary) -> int:
     """Return the Euler characteristic of a surface; each pole closes a hole of a band."""
-    closing = [kinds[0] in ("periodic", "mirrored") for kinds in boundary]
+    closing = [closes(kinds) for kinds in boundary]
     if all(closing):
         return int(boundary[0][0] == boundary[1][0] == "mirrored")  # the projective plane
     return sum(end == "pole" for kinds in boundary for end in kinds) if any(closing) else 1

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...runtime.base.threads import over_ranges
 from ...runtime.base.tolerances import CIRCLE_HEIGHT_ERROR
-from ...runtime.domain.domain import Boundary
+from ...runtime.domain.domain import Boundary, closes
 from ...runtime.surface.kernels import surfaces as kernels
 
 Array = NDArray[np.float64]
@@ -58,7 +58,7 @@ def triangulations(
     """
     from scipy.spatial import QhullError
 
-    closing = [axis for axis in (0, 1) if boundary[axis][0] in ("periodic", "mirrored")]
+    closing = [axis for axis in (0, 1) if closes(boundary[axis])]
     has_copies = len(closing) == 2 or any(boundary[axis][0] == "mirrored" for axis in closing)
     distance = 1.0 / math.sqrt(len(positions))
     for displacement, margin in _attempts(has_copies, distance):

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.trees import tree_of
+from ...runtime.domain.domain import closes
 from ...runtime.spline.spline import Spline
 from .border import border_lines
 from .links import edge_numbers, neighbours
@@ -107,8 +108,8 @@ class _Trim:
         sample = [x.sample[:end] for x, end in zip(self.lines, ends, strict=True)]
         positions = wrapped(np.concatenate([np.empty((0, 2)), *found]), self.spline.boundary)
         is_free = np.ones(len(positions), dtype=bool)
-        for axis, kinds in enumerate(self.spline.boundary):
-            if kinds[0] not in ("periodic", "mirrored"):
+        for axis, ends in enumerate(self.spline.boundary):
+            if not closes(ends):
                 is_free &= (positions[:, axis] > 0.0) & (positions[:, axis] < 1.0)
         return Vertices(positions, np.concatenate([np.empty(0, dtype=np.int64), *sample]), is_free)
 

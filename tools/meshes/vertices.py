@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.trees import tree_of
-from ...runtime.domain.domain import Boundary
+from ...runtime.domain.domain import Boundary, closes
 from ...runtime.samples.fields import GRID_NAMES, missing_fields
 from ...runtime.spline.spline import Spline
 from ...runtime.spline.tips import collapsed_sides
@@ -62,7 +62,7 @@ class Vertices:
         sample = np.flatnonzero(samples._regular)
         sample = sample[np.sort(np.unique(pairs[sample], return_index=True)[1])]
         inner = cls(positions[sample], sample, np.ones(len(sample), dtype=bool))
-        if all(end in ("periodic", "mirrored") for end, _ in boundary):
+        if all(closes(ends) for ends in boundary):
             return inner.apart(boundary)
         tree = tree_of(before_offset(samples)[sample] * spline.scale)
         fixed = [*_poles(inner, tree, spline, boundary), *_sides(inner, tree, spline, boundary)]
