@@ -265,17 +265,18 @@ class Creases:
         size = max(PRODUCTS_AT_A_TIME // len(self.rows), 1)
         for first in range(0, len(normals), size):
             some = normals[first : first + size]
-            number, interval = np.nonzero(_may_be_zero(some, self.sides.first, True))
+            middle, error = self.sides.first
+            error = error + SMOOTH * np.linalg.norm(middle, axis=1, keepdims=True)
+            number, interval = np.nonzero(np.abs(some @ middle.T) <= np.abs(some) @ error.T)
             sides = _Sides._make((x[0][interval], x[1][interval]) for x in self.sides)
             rows, ends = self.rows[interval], self.ends[interval]
             while True:
                 given, width = some[number], np.ptp(ends, axis=1)
-                value, change = _product(given, sides.first)
-                bend, more = _product(given, sides.second)
+                value, change, slack = _product(given, sides.first)
+                bend, more, rounding = _product(given, sides.second)
                 change = np.minimum(change, width * (np.abs(bend) + more))
-                slack = SMOOTH * np.linalg.norm(sides.first[0], axis=1)
                 keep = (np.abs(value) <= change + slack) & _may_be_between(given, sides)
-                one = ~_may_be_zero(given, sides.second)
+                one = np.abs(bend) > more + rounding
                 small = (change <= slack) | (width <= SMOOTH * np.ptp(self.spans[rows], axis=1))
                 several, small = keep & ~one & ~small, keep & ~one & small
                 at = np.flatnonzero(keep & one)
@@ -417,28 +418,20 @@ def _sides(tape: Tape, lines: Array, ends: Array) -> _Sides:
     return _Sides(of(above, 2 - axis), of(above, second), of(below, 1 + axis), of(above, 1 + axis))
 
 
-def _may_be_zero(normals: Array, bounds: tuple[Array, Array], all_pairs: bool = False) -> Flags:
-    """Return whether n·x may be 0, for a vector x within bounds and n known up to SMOOTH radians.
-
-    The result is a mask (k,) for normals (k, 3) and bounds of k vectors; with `all_pairs`, a mask
-    (S, k) for S normals and k vectors.
-    """
-    reach = bounds[1] + SMOOTH * np.linalg.norm(bounds[0], axis=1, keepdims=True)
-    if all_pairs:
-        return np.abs(normals @ bounds[0].T) <= np.abs(normals) @ reach.T
-    value, slack = _product(normals, (bounds[0], reach))
-    return np.abs(value) <= slack
-
-
 def _may_be_between(normals: Array, sides: _Sides) -> Flags:
     """Return a mask (k,): whether n·x_s may be 0 on a side, or have different signs on both."""
-    slopes = [_product(normals, x) for x in (sides.before, sides.after)]
-    zero = [_may_be_zero(normals, x) for x in (sides.before, sides.after)]
-    return zero[0] | zero[1] | (slopes[0][0] * slopes[1][0] < 0.0)
+    before, after = (_product(normals, x) for x in (sides.before, sides.after))
+    zero = [np.abs(value) <= error + slack for value, error, slack in (before, after)]
+    return zero[0] | zero[1] | (before[0] * after[0] < 0.0)
 
 
-def _product(normals: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
-    """Return products (k,) n·x for the middle values of vectors x, and bounds of their errors."""
+def _product(normals: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array, Array]:
+    """Return products n·x for the middle values of k vectors x, and bounds of two kinds of errors.
+
+    The first bounds (k,) are for all values of x, the others for n, which is known up to `SMOOTH`.
+    """
+    middle, error = bounds
     return (
-        np.einsum("kx,kx->k", normals, bounds[0]), np.einsum("kx,kx->k", np.abs(normals), bounds[1])
+        np.einsum("kx,kx->k", normals, middle), np.einsum("kx,kx->k", np.abs(normals), error),
+        SMOOTH * np.linalg.norm(middle, axis=1),
     )  # fmt: skip
