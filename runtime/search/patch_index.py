@@ -25,11 +25,14 @@ from .kernels.lists import (
     place_keys,
     write_caps,
 )
-from .kernels.pieces import BOUND, CHORD, Coefficients, Pieces, write_net_pieces, write_pieces
+from .kernels.pieces import CHORD, DATA_BOUND, Pieces, write_net_pieces, write_pieces
 
-# An index of all patches takes 230 bytes a patch, and is cached with the spline. A spline with more
+# An index of all patches takes 240 bytes a patch, and is cached with the spline. A spline with more
 # than MOST_PATCHES patches has an index for each range of patches; each search makes them anew.
 MOST_PATCHES = 1 << 20
+# The rounding of coordinates counts up to this part of a cell: with more of it, the search would
+# take regular points for lines, or leave all pairs of a patch and a normal to exact decisions.
+MOST_NOISE = 2.0**-20
 PIECES_AT_A_TIME, NORMALS_AT_A_TIME = 1 << 12, 1 << 16
 # Bins are halved until a piece is listed in more than this number of bins on average.
 BINS_PER_PIECE = 7.0
@@ -59,8 +62,8 @@ class Index:
 
     @property
     def bounds(self) -> Array:
-        """For each of the K pieces, a bound of the rounding errors of its forms U, V, W."""
-        return self.pieces.patches[:, BOUND]
+        """For each of the K pieces, a bound of the errors of its forms U, V, W."""
+        return self.pieces.patches[:, DATA_BOUND]
 
 
 def index_of(spline: AnySpline, threads: int | None, first: int = 0) -> Index:
@@ -87,18 +90,14 @@ def open_sides(spline: Spline) -> NDArray[np.bool_]:
     return np.array([end == "open" for end in (south, east, north, west)])
 
 
-def coefficients_of(spline: Spline) -> Coefficients:
-    """Return the coefficients of a spline in the form that kernels use."""
-    return Coefficients(spline.coefficients, spline.scale, spline.noise, open_sides(spline))
-
-
 def _of_grid(spline: Spline, first: int, last: int, threads: int | None) -> Pieces:
     """Return the patches [first, last) of a spline on a grid, as pieces."""
-    pieces, coefficients, start = Pieces.new(last - first), coefficients_of(spline), first // 4
+    pieces, start = Pieces.new(last - first), first // 4
+    mu, scale, noise = spline.coefficients, spline.scale, min(spline.noise, MOST_NOISE)
 
     def work(low: int, high: int) -> None:
         net = np.empty((6, 4))
-        write_pieces(coefficients, start, start + low, start + high, net, pieces)
+        write_pieces(mu, scale, noise, start, start + low, start + high, net, pieces)
 
     list(over_ranges(work, (last - first) // 4, PIECES_AT_A_TIME, threads))
     return pieces
@@ -106,12 +105,13 @@ def _of_grid(spline: Spline, first: int, last: int, threads: int | None) -> Piec
 
 def _of_nets(spline: NetSpline, first: int, last: int) -> Pieces:
     """Return the patches [first, last) of a spline of nets, as pieces."""
-    topology, pieces = spline.topology, Pieces.new(last - first)
-    vectors, control, angles, bounds = (
+    pieces = Pieces.new(last - first)
+    vectors, angles, bounds = (
         np.ascontiguousarray(x[first:last])
-        for x in (spline.vectors, topology.normals, topology.angles, errors_of(spline))
+        for x in (spline.vectors, spline.topology.angles, errors_of(spline))
     )
-    write_net_pieces(vectors, control, angles, bounds, np.empty((6, 4)), pieces)
+    noise = min(spline.noise, MOST_NOISE)
+    write_net_pieces(vectors, noise, angles, bounds, np.empty((6, 4)), pieces)
     return pieces
 
 

@@ -50,7 +50,7 @@ class Lattice:
         length = float(np.linalg.norm(mean))
         if length > 0.0:
             axis = mean / length
-            cosine = least_cosine(spline.coefficients, spline.scale, axis, np.empty((6, 3)))
+            cosine = least_cosine(spline.coefficients, spline.scale, axis)
             if cosine > 0.0:
                 return cls(axis, cosine - 1e-12)
         return cls.everywhere()

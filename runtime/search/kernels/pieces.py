@@ -25,9 +25,10 @@ from ...spline.kernels.patch import patch_vectors, vector_at
 
 # The columns of a cone: its axis and its chord; the normal of its slab, and half the slab's width.
 CHORD, SLAB, WIDTH, CONE = 3, 4, 7, 8
-# The columns of a patch: the vectors a, b, c, d, e, and a bound of the errors of its forms U, V, W.
-# A cell of a surface has bounds of the remainders of x_s and x_t instead of this error.
-BOUND, VECTORS = 15, 16
+# The columns of a patch: the vectors a, b, c, d, e, and bounds of the errors of its forms U, V, W,
+# without and with the rounding of coordinates. A cell of a surface has bounds of the remainders of
+# x_s and x_t instead of these errors.
+BOUND, DATA_BOUND, COLUMNS = 15, 16, 17
 REST_S, REST_T = 15, 16
 # The chord of a cone, and the width of a slab, that contain all directions.
 EVERYTHING = 2.0
@@ -39,22 +40,8 @@ WIDEST = 1.0
 RELATIVE, ABSOLUTE = 1.0 + 1e-12, 1e-14
 
 
-class Coefficients(NamedTuple):
-    """The coefficients of a spline and their properties.
-
-    `mu` (m, n, 3) are the coefficients, including ghost coefficients; `scale` is the power of two
-    that scales them to about 1, `noise` the rounding error of the scaled coordinates, and `border`
-    (4,) says which sides of the domain are open.
-    """
-
-    mu: NDArray[np.float64]
-    scale: float
-    noise: float
-    border: NDArray[np.bool_]
-
-
 class Pieces(NamedTuple):
-    """Cones with slabs (K, 8) and patches (K, 16 or more), with the columns listed above.
+    """Cones with slabs (K, 8) and patches (K, 17 or more), with the columns listed above.
 
     If the slab has the width EVERYTHING, the cone may contain the opposite of a normal of the
     piece.
@@ -66,17 +53,18 @@ class Pieces(NamedTuple):
     @classmethod
     def new(cls, count: int) -> Pieces:
         """Return empty arrays for `count` pieces."""
-        return cls(np.empty((count, CONE)), np.empty((count, VECTORS)))
+        return cls(np.empty((count, CONE)), np.empty((count, COLUMNS)))
 
 
 @jit
-def write_pieces(spline, first, start, last, net, pieces):
+def write_pieces(mu, scale, noise, first, start, last, net, pieces):
     """Write the pieces of the patches in the cells [start, last) of a spline.
 
-    Row 0 of `pieces` is the first patch of cell `first`. `net` (6, 4) is a work array.
+    `scale` is the power of two that scales the coefficients mu (m, n, 3) to about 1, `noise` the
+    error of the scaled coordinates. Row 0 of `pieces` is the first patch of cell `first`. `net` (6,
+    4) is a work array.
     """
-    mu, scale, noise, border = spline
-    rows, columns = mu.shape[0] - 2, mu.shape[1] - 2
+    columns = mu.shape[1] - 2
     for cell in range(start, last):
         i, j = cell // columns, cell % columns
         c = vector_at(mu, i + 1, j + 1)
@@ -96,15 +84,11 @@ def write_pieces(spline, first, start, last, net, pieces):
             max(abs(sw.y), abs(s.y), abs(se.y), abs(w.y), abs(e.y), abs(nw.y), abs(n.y), abs(ne.y)),
             max(abs(sw.z), abs(s.z), abs(se.z), abs(w.z), abs(e.z), abs(nw.z), abs(n.z), abs(ne.z)),
         )
-        south = noise if j == 0 and border[0] else 0.0
-        east = noise if i == rows - 1 and border[1] else 0.0
-        north = noise if j == columns - 1 and border[2] else 0.0
-        west = noise if i == 0 and border[3] else 0.0
         at = 4 * (cell - first)
-        put_piece(pieces, at, triangle(sw, s, se, w, e, n), spread, south, net)
-        put_piece(pieces, at + 1, triangle(se, e, ne, s, n, w), spread, east, net)
-        put_piece(pieces, at + 2, triangle(ne, n, nw, e, w, s), spread, north, net)
-        put_piece(pieces, at + 3, triangle(nw, w, sw, n, s, e), spread, west, net)
+        put_piece(pieces, at, triangle(sw, s, se, w, e, n), spread, noise, net)
+        put_piece(pieces, at + 1, triangle(se, e, ne, s, n, w), spread, noise, net)
+        put_piece(pieces, at + 2, triangle(ne, n, nw, e, w, s), spread, noise, net)
+        put_piece(pieces, at + 3, triangle(nw, w, sw, n, s, e), spread, noise, net)
 
 
 @loop
@@ -116,14 +100,36 @@ def step_to(mu, i, j, centre, scale):
 
 @loop
 def put_piece(pieces, k, patch, spread, noise, net):
-    """Write piece k: a patch, the cone of its normals, and a bound of the errors of U, V, W.
+    """Write piece k: a patch, the cone of its normals, and bounds of the errors of U, V, W.
 
-    `spread` has the largest differences of the coefficients of the patch in x, y and z. `noise` is
-    an error that is added to the rounding errors of the coefficients.
+    `spread` has the largest differences of the coefficients of the patch in x, y and z, and `noise`
+    is the error of their coordinates.
     """
     tangents = tangent_bounds(patch)
-    square = max(tangents.x, tangents.y, tangents.z)
-    square = square * square
+    put_cone(pieces, k, patch, tangents, noise, 0.0, net)
+    axis, chord = row_vector(pieces.cones, k), pieces.cones[k, CHORD]
+    # Bounds of the components of normals, then of the error and of the size of linear forms.
+    x, y, z = (
+        min(abs(axis.x) + chord, 1.0),
+        min(abs(axis.y) + chord, 1.0),
+        min(abs(axis.z) + chord, 1.0),
+    )
+    rounding = FORM_ERROR * (x * spread.x + y * spread.y + z * spread.z)
+    error = rounding + noise
+    form = chord * (tangents.x + tangents.y + tangents.z) + error
+    form += max(abs(dot(axis, patch.a)), abs(dot(axis, patch.b)), abs(dot(axis, patch.c)))
+    form += max(abs(dot(axis, patch.d)), abs(dot(axis, patch.e)))
+    write_patch(patch, 32.0 * rounding * form, 32.0 * error * form, pieces.patches[k])
+
+
+@loop
+def put_cone(pieces, k, patch, tangents, noise, angle, net):
+    """Write the cone of piece k; errors of coordinates are up to `noise`, of normals up to `angle`.
+
+    `tangents` are the results of `tangent_bounds`.
+    """
+    tangent = max(tangents.x, tangents.y, tangents.z)
+    square = tangent * tangent
     control = control_normals(patch)
     for m in range(6):
         n = control[m]
@@ -131,26 +137,21 @@ def put_piece(pieces, k, patch, spread, noise, net):
         regular = size > SHORT_CONTROL_NORMAL * square
         inverse = 1.0 / size if regular else 0.0
         set_row(net, m, Vector(n.x * inverse, n.y * inverse, n.z * inverse))
-        net[m, 3] = ANGLE_ERROR * (1.0 + square * inverse) if regular else math.inf
-    cone = pieces.cones[k]
-    write_cone(net, cone)
-    x = min(abs(cone[0]) + cone[CHORD], 1.0)  # upper bounds of the components of normals
-    y = min(abs(cone[1]) + cone[CHORD], 1.0)
-    z = min(abs(cone[2]) + cone[CHORD], 1.0)
-    form = x * tangents.x + y * tangents.y + z * tangents.z
-    error = FORM_ERROR * (x * spread.x + y * spread.y + z * spread.z) + noise
-    write_patch(patch, 32.0 * error * (form + error), pieces.patches[k])
+        # At points of lines, n·p_u and n·p_v are up to about 2 `noise`: see `lines_of`.
+        error = ANGLE_ERROR + (ANGLE_ERROR * square + 8.0 * noise * tangent) * inverse
+        net[m, 3] = angle + error if regular else math.inf
+    write_cone(net, pieces.cones[k])
 
 
 @inline
-def write_patch(patch, bound, row):
-    """Write the vectors a, b, c, d, e of a patch to a row, and a bound of the errors of U, V, W."""
+def write_patch(patch, bound, data_bound, row):
+    """Write the vectors a, b, c, d, e of a patch to a row, and bounds of the errors of U, V, W."""
     write_vector(row, 0, patch.a)
     write_vector(row, 3, patch.b)
     write_vector(row, 6, patch.c)
     write_vector(row, 9, patch.d)
     write_vector(row, 12, patch.e)
-    row[BOUND] = bound
+    row[BOUND], row[DATA_BOUND] = bound, data_bound
 
 
 @inline
@@ -160,20 +161,13 @@ def write_vector(row, at, v):
 
 
 @jit
-def write_net_pieces(vectors, control, angles, bounds, net, pieces):
+def write_net_pieces(vectors, noise, angles, bounds, net, pieces):
     """Write the pieces of the patches of a spline of nets; `net` (6, 4) is a work array.
 
-    The T patches have the vectors a, …, e (T, 5, 3), control normals (T, 6, 3), errors of these as
-    angles (T,), and bounds (T,) of the errors of U, V, W.
+    The T patches have the vectors a, …, e (T, 5, 3), whose coordinates have errors up to `noise`,
+    errors of normals as angles (T,), and bounds (T,) of the errors of U, V, W.
     """
     for k in range(angles.size):
-        for m in range(6):
-            n = row_vector(control[k], m)
-            size = length(n)
-            inverse = 1.0 / size if size > 0.0 else 0.0
-            set_row(net, m, Vector(n.x * inverse, n.y * inverse, n.z * inverse))
-            net[m, 3] = angles[k] + ANGLE_ERROR if size > 0.0 else math.inf
-        write_cone(net, pieces.cones[k])
         v = vectors[k]
         patch = Patch(
             row_vector(v, 0),
@@ -183,7 +177,8 @@ def write_net_pieces(vectors, control, angles, bounds, net, pieces):
             row_vector(v, 4),
             Vector(0.0, 0.0, 0.0),
         )
-        write_patch(patch, bounds[k], pieces.patches[k])
+        put_cone(pieces, k, patch, tangent_bounds(patch), noise, angles[k], net)
+        write_patch(patch, bounds[k], bounds[k], pieces.patches[k])
 
 
 @loop
@@ -256,14 +251,6 @@ def thinnest(net, axis):
 
 
 @loop
-def write_control_normals(patch, net):
-    """Write the control normals of a patch to `net` (6, 3)."""
-    normals = control_normals(patch)
-    for k in range(6):
-        set_row(net, k, normals[k])
-
-
-@loop
 def tangent_bounds(patch):
     """Return bounds of |x|, |y| and |z| of the tangent vectors of a patch."""
     a, b, c, d, e, _ = patch
@@ -275,20 +262,18 @@ def tangent_bounds(patch):
 
 
 @jit
-def least_cosine(mu, scale, axis, net):
+def least_cosine(mu, scale, axis):
     """Return a lower bound of the cosines between a unit vector (3,) and the normals of the spline.
 
     The bound is the least cosine with a control normal. After the first negative cosine, no more
-    patches are examined. `net` (6, 3) is a work array.
+    patches are examined.
     """
     columns = mu.shape[1] - 2
     towards = Vector(axis[0], axis[1], axis[2])
     least = 1.0
     for number in range(4 * (mu.shape[0] - 2) * columns):
         i, j, turn = place_of(number, columns)
-        write_control_normals(patch_vectors(mu, i + 1, j + 1, turn, scale), net)
-        for k in range(6):
-            normal = row_vector(net, k)
+        for normal in control_normals(patch_vectors(mu, i + 1, j + 1, turn, scale)):
             size = length(normal)
             if size > 0.0:
                 least = min(least, dot(normal, towards) / size)

@@ -22,7 +22,7 @@ from ...directions.kernels.vectors import dot, row_vector
 from ...machine_code.jit import inline, jit, loop
 from ...spline.kernels.patch import normal_of_patch
 from .lists import FINEST, NUMBER, meets
-from .pieces import BOUND, CHORD, EVERYTHING, REST_S, REST_T, WIDTH
+from .pieces import BOUND, CHORD, DATA_BOUND, EVERYTHING, REST_S, REST_T, WIDTH
 
 # The kinds of pieces.
 PATCHES, CELLS = 0, 1
@@ -155,10 +155,12 @@ def test_tile(cone, row, tile, count):
 
     The patch has a normal if its forms U, V, W and D have the same sign there (paper, Sect. 3.2),
     and if the normal is in the cone. The forms alone do not distinguish a normal from its opposite.
+    A normal stays undecided if the rounding of coordinates may make it that of a line.
     """
     patch = patch_in(row)
-    axis, square, bound = Vector(cone[0], cone[1], cone[2]), cone[CHORD] * cone[CHORD], row[BOUND]
-    least = ACCURATE * bound
+    axis, square = Vector(cone[0], cone[1], cone[2]), cone[CHORD] * cone[CHORD]
+    bound, wide = row[BOUND], row[DATA_BOUND]
+    least = max(ACCURATE * bound, wide)
     for start in range(0, count, STEP):
         for c in range(STEP):
             i = np.uint64(start + c)  # unsigned: no check for negative indices
@@ -169,7 +171,7 @@ def test_tile(cone, row, tile, count):
             high = U if U > V else V
             high = high if high > W else W
             x, y, z = n.x - axis.x, n.y - axis.y, n.z - axis.z
-            out = ((low < -bound) & (high > bound)) | (x * x + y * y + z * z > square)
+            out = ((low < -wide) & (high > wide)) | (x * x + y * y + z * z > square)
             sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
             tile[i + CODE] = NO if out else YES if sure else UNDECIDED
 
