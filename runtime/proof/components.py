@@ -72,7 +72,8 @@ def components_of(open_: Undecided, domain: Array) -> Undecided:
         _join(Undecided._make(x[some] for x in open_), keep[some], domain)
     open_, low, high = Undecided._make(x[keep] for x in open_), domain[0:4:2], domain[1:4:2]
     boxes = open_.boxes
-    around = (boxes[:, 1::2] - boxes[:, 0::2] >= high - low) & (domain[4:] > 0.0)
+    around = boxes[:, 1::2] - boxes[:, 0::2] >= (1.0 - NEAR) * (high - low)
+    around &= domain[4:] > 0.0
     boxes[:, 0::2] = np.where(around, low, boxes[:, 0::2])
     boxes[:, 1::2] = np.where(around, high, boxes[:, 1::2])
     return open_

@@ -112,16 +112,24 @@ def _basis(knots: tuple[float, ...], degree: int, middle: float, scale: float) -
 
 
 def _polynomials(net: Net, along_u: Axis, along_v: Axis) -> Polynomials:
-    """Return the polynomials on all pairs of spans, with bounds of their rounding errors."""
+    """Return the polynomials on all pairs of spans, with bounds of their rounding errors.
+
+    The bounds include the errors of the coordinates of control points, which are rounded numbers.
+    """
     p, q = (int(x) for x in net.degrees)
     rows = along_u.first[:, None] + np.arange(p + 1)
     columns = along_v.first[:, None] + np.arange(q + 1)
     points = net.points[rows[:, None, :, None], columns[None, :, None, :]]
-    sizes = np.einsum(
-        "ira,ijrsc,jsb->ijabc", *map(np.abs, (along_u.basis, points, along_v.basis)), optimize=True
+    weights = points[..., 3:] if points.shape[-1] == COORDINATES else 1.0
+    errors = (p + q + 8) * UNIT * np.abs(points)
+    errors[..., :3] += UNIT * np.abs(weights * net.centre)
+    values, errors = (
+        np.einsum("ira,ijrsc,jsb->ijabc", *x, optimize=True)
+        for x in (
+            (along_u.basis, points, along_v.basis),
+            (np.abs(along_u.basis), errors, np.abs(along_v.basis)),
+        )
     )
-    values = np.einsum("ira,ijrsc,jsb->ijabc", along_u.basis, points, along_v.basis, optimize=True)
-    errors = (p + q + 8) * UNIT * sizes
     if points.shape[-1] < COORDINATES:
         more = [(0, 0)] * 4 + [(0, 1)]
         values, errors = np.pad(values, more), np.pad(errors, more)

@@ -45,6 +45,7 @@ from .pairs import (
     HARD,
     HU,
     HV,
+    MORE,
     NONE,
     ONE,
     RADIUS,
@@ -53,6 +54,8 @@ from .pairs import (
     STATE,
     U0,
     V0,
+    S,
+    T,
     bound_pairs,
     compact,
     contracted,
@@ -64,25 +67,22 @@ from .pairs import (
 )
 
 # The number of levels of bisection, and the levels after which clusters are tested.
-DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19)
-# The number of boxes along a curve of solutions about doubles on each level. More than MANY boxes
-# count as a curve if their number grows by more than the factor GROWTH on TIMES consecutive levels.
-# At most MOST cells and BOXES boxes are processed.
-MANY, GROWTH, TIMES, MOST, BOXES = 256, 1.6, 3, 1024, 12288
+DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19, 24)
+# Boxes on curves of solutions are set aside if more than MOST cells are undecided, or more than
+# MANY boxes, between GROWTH and AREA times as many as on the level before: along a curve, their
+# number doubles. Bisection ends if there are more than BOXES other boxes.
+MANY, GROWTH, AREA, MOST, BOXES = 256, 1.6, 3.0, 1024, 12288
 # The columns of boxes: u, v, the index of a cell, half the widths relative to those of the cell.
 BOX_COLUMNS = 5
 # A box is cut into two if one side is more than SLENDER times as long as the other, relative to the
 # sides of its cell.
 # Contraction leaves at least the part SHRUNK of a side, so that clusters have a width.
 SLENDER, SHRUNK = 4.0, 2.0**-5
-# A cluster counts as a curve of solutions if from the centre of each of its boxes (of CHECKED
-# boxes, if there are more) at most SETTLING steps lead to a solution within BESIDE half widths. A
-# Hessian counts as one of rank 1 if its determinant is less than RANK times the square of its
-# larger eigenvalue.
-SETTLING, CHECKED, BESIDE, RANK = 32, 64, 4.0, 1e-4
-# From this level on, boxes may be open because of rounding if their number more than doubles on a
-# level.
-FINE = 10
+# A box is on a curve of solutions if at most SETTLING steps lead from its centre to a solution
+# within BESIDE half widths. A Hessian counts as one of rank 1 if its determinant is less than RANK
+# times the square of its larger eigenvalue. If it is not of rank 1, and the error of the solution
+# is less than SURE times the size of the box, the solution is regular: it is on no curve.
+SETTLING, BESIDE, RANK, SURE = 32, 4.0, 1e-4, 2.0**-20
 
 
 class Boxes(NamedTuple):
@@ -90,6 +90,7 @@ class Boxes(NamedTuple):
 
     now: NDArray[np.float64]
     following: NDArray[np.float64]
+    on_curve: NDArray[np.float64]
     hulls: NDArray[np.float64]
     owner: NDArray[np.int64]
     fates: NDArray[np.int64]
@@ -106,7 +107,8 @@ class Boxes(NamedTuple):
         """Return work arrays for an index with this number of cells."""
         most = 4 * BOXES + cells
         return cls(
-            np.empty((most, BOX_COLUMNS)), np.empty((most, BOX_COLUMNS)), np.empty((most, 4)),
+            np.empty((most, BOX_COLUMNS)), np.empty((most, BOX_COLUMNS)),
+            np.empty((most, BOX_COLUMNS)), np.empty((most, 4)),
             np.empty(most, np.int64), np.empty(most, np.int64), np.zeros(ROWS * LANES),
             np.zeros(LANES, np.int64), np.array(FOLDS), np.empty((2, PARTS + 1)),
             np.empty((2, PARTS + 1)), np.empty(PATH), CellBounds.new(LANES),
@@ -255,8 +257,8 @@ def decide_hull(tape, work, index, boxes, hull, domain, number, n, answers):
 
 
 @loop
-def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, answers):
-    """Drop clusters of boxes that a degree or a fold decides; on the `last` level, list the rest.
+def decide_clusters(tape, work, index, boxes, count, domain, number, n, answers):
+    """Drop clusters of boxes of the next level that a degree or a fold decides.
 
     Returns the number of boxes that remain, −1 if there was no room.
     """
@@ -276,12 +278,6 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
             u, v, r_u, r_v = tile.place[0, 0], tile.place[0, 1], tile.place[0, 2], tile.place[0, 3]
             if not add_open(answers, number, u - r_u, u + r_u, v - r_v, v + r_v, OPEN_BOX, domain):
                 return -1
-        elif boxes.fates[i] != NO_PLACE and last:
-            if not list_cluster(
-                tape, work, cells, boxes, boxes.following, count, i, domain, number, n, answers
-            ):
-                return -1
-            boxes.fates[i] = NO_PLACE
     left = 0
     for k in range(count):
         if boxes.fates[boxes.owner[k]] != NO_PLACE and boxes.fates[boxes.owner[k]] != DOUBLE:
@@ -292,118 +288,163 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
 
 
 @loop
-def give_up(tape, work, index, boxes, rows, count, domain, number, n, answers):
-    """List the undecided boxes, which are the first `count` rows, as clusters.
+def set_aside(tape, work, boxes, cells, count, on_curve, n):
+    """Move the boxes of a level that are on curves of solutions to `boxes.on_curve`.
 
-    Return whether there was room.
+    `on_curve` is the number of boxes there. Returns the new number, and that of the other boxes.
     """
-    cells = index.cells
-    hulls = cluster(rows, count, cells, domain[4:], boxes.hulls, boxes.owner)
+    left = 0
+    for first in range(0, count, LANES):
+        lanes = min(LANES, count - first)
+        settle(tape, work, boxes, cells, boxes.now[first:], lanes, n)
+        for k in range(lanes):
+            on = boxes.pairs[np.uint64(k) + STATE] == ONE
+            to = boxes.on_curve[on_curve] if on else boxes.now[left]
+            for x in range(BOX_COLUMNS):
+                to[x] = boxes.now[first + k, x]
+            on_curve, left = (on_curve + 1, left) if on else (on_curve, left + 1)
+    return on_curve, left
+
+
+@loop
+def list_rest(tape, work, index, boxes, count, on_curve, domain, number, n, answers):
+    """List the undecided boxes of the last level, and those on curves, as clusters.
+
+    A cluster counts as a curve if all of its boxes are on curves. Return whether there was room.
+    """
+    cells, rows = index.cells, boxes.on_curve
+    on_curve, left = set_aside(tape, work, boxes, cells, count, on_curve, n)
+    for k in range(left):
+        for x in range(BOX_COLUMNS):
+            rows[on_curve + k, x] = boxes.now[k, x]
+    hulls = cluster(rows, on_curve + left, cells, domain[4:], boxes.hulls, boxes.owner)
     for i in range(hulls):
-        if not list_cluster(tape, work, cells, boxes, rows, count, i, domain, number, n, answers):
+        hull, first = boxes.hulls[i], answers.counts[1]
+        middle = middle_of(boxes, on_curve, left, i)
+        kind = CURVE if middle >= 0 else OPEN_BOX
+        if not add_open(answers, number, hull[0], hull[1], hull[2], hull[3], kind, domain):
             return False
+        if answers.counts[1] > first and kind == CURVE:
+            settle(tape, work, boxes, cells, rows[middle:], 1, n)
+            row = answers.open_boxes[first]
+            row[WHERE], row[WHERE + 1] = work.u[0], work.v[0]
     return True
 
 
-@loop
-def list_cluster(tape, work, cells, boxes, rows, count, i, domain, number, n, answers):
-    """List cluster i of boxes, as a curve if it is one; return whether there was room."""
-    hull, first = boxes.hulls[i], answers.counts[1]
-    kind = CURVE if is_curve(tape, work, cells, boxes, rows, count, i, n) else OPEN_BOX
-    if not add_open(answers, number, hull[0], hull[1], hull[2], hull[3], kind, domain):
-        return False
-    if answers.counts[1] > first and kind == CURVE:
-        row = answers.open_boxes[first]
-        row[WHERE], row[WHERE + 1] = boxes.ends[0, 0], boxes.ends[1, 0]
-    return True
-
-
-@loop
-def is_curve(tape, work, cells, boxes, rows, count, owner, n):
-    """Return whether each box of a cluster has a solution next to it, up to rounding.
-
-    At most CHECKED boxes are tried. The solution near the middle one is written to `ends`.
-    """
+@inline
+def middle_of(boxes, on_curve, left, owner):
+    """Return the middle box of a cluster, −1 if one of them is on no curve."""
     own = 0
-    for k in range(count):
-        own += 1 if boxes.owner[k] == owner else 0
-    step = (own + CHECKED - 1) // CHECKED
-    middle, own = own // (2 * step), 0
-    for k in range(count):
-        if boxes.owner[k] != owner:
-            continue
-        if own % step == 0:
-            if not settles(tape, work, cells, rows[k], n):
-                return False
-            if own == middle * step:
-                boxes.ends[0, 0], boxes.ends[1, 0] = work.u[0], work.v[0]
-        own += 1
-    return True
+    for k in range(on_curve + left):
+        if boxes.owner[k] == owner:
+            if k >= on_curve:
+                return -1
+            own += 1
+    middle = own // 2
+    for k in range(on_curve):
+        if boxes.owner[k] == owner:
+            if middle == 0:
+                return k
+            middle -= 1
+    return -1
 
 
 @loop
-def settles(tape, work, cells, box, n):
-    """Move from the centre of a box towards a solution by Gauss–Newton steps; write u, v to `work`.
+def settle(tape, work, boxes, cells, rows, lanes, n):
+    """Move from the centres of boxes towards solutions by Gauss–Newton steps; write u, v to `work`.
 
-    Return whether the steps reach a point near the box whose residual is explained by rounding.
+    The boxes are the first rows, as many as there are lanes. The state of a lane becomes ONE if the
+    steps reach a point near the box whose residual is explained by rounding, else NONE.
     """
-    j, outputs = int(box[2]), tape.outputs
-    h_u, h_v = cells.place[j, 2], cells.place[j, 3]
+    t, outputs = boxes.pairs, tape.outputs
     x, y, z = (
         np.uint64(POINT * outputs[0]), np.uint64(POINT * outputs[1]), np.uint64(POINT * outputs[2])
     )  # fmt: skip
-    first, far = cells.noise[j], BESIDE * max(box[3], box[4])
-    s = t = 0.0
-    for _ in range(SETTLING):
-        work.u[0], work.v[0] = box[0] + h_u * s, box[1] + h_v * t
-        evaluate_points(tape, work.u, work.v, 1, work.registers)
-        a, b, c, p, q = forms_at(work.registers, x, y, z, n, h_u, h_v)
-        rest_s, rest_t = first[FIRST_S] + first[TOLERANCE_S], first[FIRST_T] + first[TOLERANCE_T]
-        if abs(p) <= rest_s and abs(q) <= rest_t:
-            return True
-        large = 0.5 * (a + c) + math.copysign(math.hypot(0.5 * (a - c), b), a + c)
-        if not abs(large) > 0.0:
-            return False
-        if abs(a * c - b * b) > RANK * large * large:
-            s, t, _ = newton(a, b, c, p, q, s, t)
-        else:
-            e_s, e_t = (b, large - a) if abs(a) < abs(c) else (large - c, b)
-            step = (e_s * p + e_t * q) / (large * (e_s * e_s + e_t * e_t))
-            s, t = s - step * e_s, t - step * e_t
-        # At joints, the tolerance of normals lets solutions be this much farther from a box.
-        if not max(abs(s), abs(t)) <= far + BESIDE * (rest_s + rest_t) / abs(large):
-            return False
-    return False
+    for k in range(lanes):
+        i = np.uint64(k)
+        t[i + S] = t[i + T] = 0.0
+        t[i + STATE] = MORE
+    moving, step = True, 0
+    while moving:
+        for k in range(lanes):
+            i, j = np.uint64(k), int(rows[k, 2])
+            work.u[k] = rows[k, 0] + cells.place[j, 2] * t[i + S]
+            work.v[k] = rows[k, 1] + cells.place[j, 3] * t[i + T]
+        evaluate_points(tape, work.u, work.v, lanes, work.registers)
+        moving, step = False, step + 1
+        for k in range(lanes):
+            i, j = np.uint64(k), int(rows[k, 2])
+            if t[i + STATE] != MORE:
+                continue
+            forms = forms_at(
+                work.registers, x + i, y + i, z + i, n, cells.place[j, 2], cells.place[j, 3]
+            )
+            t[i + S], t[i + T], t[i + STATE] = settled(
+                forms, cells.noise[j], rows[k, 3], rows[k, 4], t[i + S], t[i + T]
+            )
+            if t[i + STATE] == MORE:
+                t[i + STATE] = MORE if step < SETTLING else NONE
+                moving = moving or step < SETTLING
+
+
+@loop
+def settled(forms, noise, size_s, size_t, s, t):
+    """Return s, t after a Gauss–Newton step, or the same s, t with the state ONE if they settled.
+
+    `forms` are those at s, t in a box with the half widths size_s, size_t.
+    """
+    a, b, c, p, q = forms
+    rest_s, rest_t = noise[FIRST_S] + noise[TOLERANCE_S], noise[FIRST_T] + noise[TOLERANCE_T]
+    large = 0.5 * (a + c) + math.copysign(math.hypot(0.5 * (a - c), b), a + c)
+    d = abs(a * c - b * b)
+    regular = d > RANK * large * large
+    if abs(p) <= rest_s and abs(q) <= rest_t:
+        # A regular solution whose error is small relative to the box is on no curve.
+        alone = (
+            regular
+            and abs(c) * rest_s + abs(b) * rest_t < SURE * d * size_s
+            and abs(b) * rest_s + abs(a) * rest_t < SURE * d * size_t
+        )
+        return s, t, NONE if alone else ONE
+    if not abs(large) > 0.0:
+        return s, t, NONE
+    if regular:
+        s, t, _ = newton(a, b, c, p, q, s, t)
+    else:
+        e_s, e_t = (b, large - a) if abs(a) < abs(c) else (large - c, b)
+        step = (e_s * p + e_t * q) / (large * (e_s * e_s + e_t * e_t))
+        s, t = s - step * e_s, t - step * e_t
+    # At joints, the tolerance of normals lets solutions be this much farther from a box.
+    most = BESIDE * (max(size_s, size_t) + (rest_s + rest_t) / abs(large))
+    return s, t, MORE if max(abs(s), abs(t)) <= most else NONE
 
 
 @loop
 def bisect(tape, work, index, boxes, count, domain, number, n, answers):
     """Find the solutions for a normal in whole cells; return whether there was room."""
-    fold = growing = 0
-    if count > MOST:
-        return give_up(tape, work, index, boxes, boxes.now, count, domain, number, n, answers)
+    fold, on_curve, growing = 0, 0, count > MOST
     for level in range(DEEPEST + 1):
-        if count > BOXES or (count > MANY and growing >= TIMES):
-            return give_up(tape, work, index, boxes, boxes.now, count, domain, number, n, answers)
+        if count > MANY and growing:
+            on_curve, count = set_aside(tape, work, boxes, index.cells, count, on_curve, n)
+        if count > BOXES or on_curve + 4 * count > boxes.owner.size:
+            break
         following = cut_boxes(tape, work, index, boxes, count, number, n, answers)
         if following < 0:
             return False
-        last = level == DEEPEST or (level >= FINE and following > 2 * count)
-        if following > 0 and (last or (fold < boxes.levels.size and level == boxes.levels[fold])):
+        if following > 0 and fold < boxes.levels.size and level == boxes.levels[fold]:
             fold += 1
             following = decide_clusters(
-                tape, work, index, boxes, following, domain, number, n, last, answers
+                tape, work, index, boxes, following, domain, number, n, answers
             )
             if following < 0:
                 return False
-        if following == 0:
-            return True
-        growing = growing + 1 if following > GROWTH * count else 0
-        count = following
+        growing, count = GROWTH * count < following < AREA * count, following
         for k in range(count):
             for x in range(BOX_COLUMNS):
                 boxes.now[k, x] = boxes.following[k, x]
-    return True
+        if count == 0:
+            break
+    return list_rest(tape, work, index, boxes, count, on_curve, domain, number, n, answers)
 
 
 @loop

@@ -12,7 +12,7 @@ import pytest
 import sympy as sp
 
 from ...products import covering
-from ...shapes import CIRCLE, WEIGHTS, revolved
+from ...shapes import CIRCLE, WEIGHTS, conics, revolved
 
 REGULAR, ISOLATED, CURVE = gm.Component.REGULAR, gm.Component.ISOLATED, gm.Component.CURVE
 Z, X = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
@@ -51,6 +51,16 @@ def nurbs_torus() -> gm.Surface:
     return revolved(0.4 * CIRCLE + [1.0, 0.0], WEIGHTS)
 
 
+def vase() -> gm.Surface:
+    """Return a surface of revolution of degree 4 with a part of a cylinder and one of a plane."""
+    r = [0.5, 0.8, *[1.0] * 5, 1.1, 1.3, 1.5, 1.7, 1.9, 2.1, 2.3, 2.5, 2.6]
+    z = [0.0, 0.1, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4, 1.5, *[1.8] * 5, 2.0, 2.5]
+    points = np.array([[(a * x, a * y, b) for a, b in zip(r, z, strict=True)] for x, y in CIRCLE])
+    knots = np.concatenate([np.zeros(4), np.linspace(0.0, 1.0, len(r) - 3), np.ones(4)])
+    weights = np.outer(WEIGHTS, np.ones(len(r)))
+    return gm.Surface.from_nurbs((2, 4), (conics(CIRCLE), knots), points, weights)
+
+
 def on_top(x: Any, y: Any, z: Any) -> Any:
     return np.hypot(np.hypot(x, y) - 1.0, z - 0.4)
 
@@ -71,6 +81,15 @@ CASES = {
         partial(graph, "(u**2 + v**2 - 1/4)**2"), Z, [CURVE, REGULAR], 1,
         lambda x, y, z: np.hypot(np.hypot(x, y) - 0.5, z), 1e-9,
     ),
+    # On the circle, K vanishes of higher order.
+    "flat crater": Case(
+        partial(graph, "(u**2 + v**2 - 1/4)**3"), Z, [CURVE, REGULAR], 1,
+        lambda x, y, z: np.hypot(np.hypot(x, y) - 0.5, z), 1e-5,
+    ),
+    "crossing": Case(partial(graph, "u**2*v**2"), Z, [CURVE], 0, lambda x, y, z: x * y, 1e-9),
+    "flat crossing": Case(partial(graph, "u**4*v**2"), Z, [CURVE], 0, lambda x, y, z: x * y, 1e-3),
+    "cylinder in a vase": Case(vase, X, [CURVE], 0, lambda x, y, z: np.hypot(x - 1.0, y), 1e-9),
+    "plane in a vase": Case(vase, (0.0, 0.0, -1.0), [CURVE], 0, lambda x, y, z: z - 1.8, 1e-9),
     "cylinder": Case(
         gm.surfaces.cylinder, (0.6, 0.8, 0.0), [CURVE], 0,
         lambda x, y, z: np.hypot(x - 0.6, y - 0.8), 1e-12,
@@ -95,6 +114,7 @@ MOVES: dict[str, tuple[Any, float, float]] = {
     "small": (1e-9 * np.eye(3), 0.0, 1.0),
     "mirrored": (np.diag([1.0, -1.0, 1.0]), 0.0, 1.0),
     "far away": (np.eye(3), 1e6, 1e6),
+    "turned, far away": (TURN, 1e6, 1e6),
 }
 
 
