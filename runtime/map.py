@@ -32,7 +32,7 @@ from .surface.surfaces import named
 # The number of surfaces whose maps are cached; splines and indices take some MB each.
 KEPT = 8
 # The fields that the comparison of samples with points of creases needs.
-OF_CREASES = ("points", "uv", "normal_index", "component")
+OF_CREASES = ("points", "uv", "uv_radius", "normal_index", "component")
 
 
 class GaussMap(Methods):
@@ -252,7 +252,9 @@ class GaussMap(Methods):
         array([0, 0])
 
         """
-        fields = ("points", "normal_index", "gaussian_curvature", "component")
+        fields = ["points", "normal_index", "gaussian_curvature", "component"]
+        if self._creases is not None:
+            fields.append("uv_radius")
         directions = as_normals(normals)
         found = self.points(directions, fields=fields, threads=threads)
         asked, signs = found.report.normals or 0, np.copysign(1.0, found.gaussian_curvature)
@@ -305,14 +307,16 @@ class GaussMap(Methods):
         proved = all(isinstance(x, ProvedSurface) for x in self._pieces)
         wanted = checked_fields(fields, on_surface, proved, given=True)
         memory = {} if out is None else out.arrays()
-        pieces = [x.used(number, threads, memory).within(reach) for x in self._pieces]
+        # Points of creases are told from other points in double precision.
         more = wanted if self._creases is None else [*dict.fromkeys([*wanted, *OF_CREASES])]
+        given = number if self._creases is None else np.dtype(np.float64)
+        pieces = [x.used(given, threads, memory).within(reach) for x in self._pieces]
         if len(pieces) == 1:
-            found = samples_at(pieces[0], normals, more, number, progress)
+            found = samples_at(pieces[0], normals, more, given, progress)
         else:
             assert isinstance(surface, Surface)
             known = in_reach(surface, reach) if on_surface else None
-            found = samples_of_pieces(surface.name, known, pieces, normals, more, number, progress)
+            found = samples_of_pieces(surface.name, known, pieces, normals, more, given, progress)
         if self._creases is None:
             return found
         return with_creases(found, self._creases, normals, wanted, number, reach)

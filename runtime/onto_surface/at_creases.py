@@ -34,9 +34,10 @@ from ..tape.tapes import bounds_over_boxes, jets_of
 # after a component are taken at the distance APART from the component.
 SMOOTH = 1e-9
 APART = math.sqrt(SMOOTH)
-# The normals of both sides are known up to the angle ROUNDING, and points with these normals up to
-# BESIDE, relative to the size of the creases.
-ROUNDING, BESIDE = 2.0**-43, 2.0**-40
+# The normals of both sides are known up to the angle ROUNDING. Up to the angle NEARLY, a point of a
+# crease may have a regular point beside it which cannot be told apart: one that is nearer than four
+# times its error bound, or than BESIDE, relative to the size of the creases.
+ROUNDING, NEARLY, BESIDE = 2.0**-43, 2.0**-40, 2.0**-40
 # In intervals where n·x_w has at most one zero, there are STEPS steps of Newton's method. Other
 # intervals, and those where these steps do not settle, are halved. If a normal has more than MANY
 # of them, as on a straight crease, only those with a zero in the middle are kept.
@@ -56,9 +57,10 @@ class OnCreases(NamedTuple):
     `numbers` (k,) are the indices of the normals. `degrees` (k,) are the indices −1, 0 or 1 that
     the docstring of the module defines, or NaN where the index is unknown. The parameters of all
     points of a component differ by at most `radius` (k, 2) from `uv` (k, 2). A point is `unsure` if
-    its normal is that of one side, up to rounding, or if its index is unknown. In the first case
-    the side may have a regular point with this normal next to it. If its index is −degree, the
-    points are `paired`: there are both or none. Otherwise there is one of them.
+    its normal is nearly that of one side, or if its index is unknown. In the first case the side
+    may have a regular point with this normal next to it. If there is one, its index is −degree if
+    the points are `paired`, and only then there are both. `alone` is whether there is a point of
+    the crease if there is no such regular point.
     """
 
     numbers: Indices
@@ -68,6 +70,7 @@ class OnCreases(NamedTuple):
     radius: Array
     unsure: Flags
     paired: Flags
+    alone: Flags
 
 
 class Corner(NamedTuple):
@@ -132,7 +135,7 @@ class Corner(NamedTuple):
             np.tile(x, (len(numbers), 1)) for x in (self.uv, self.point, self.radius)
         )
         degrees, none = np.where(unsure, np.nan, low), np.zeros(len(numbers), np.bool_)
-        return OnCreases(numbers, uv, points, degrees, radius, unsure, none)
+        return OnCreases(numbers, uv, points, degrees, radius, unsure, none, none)
 
 
 class _Sides(NamedTuple):
@@ -206,12 +209,13 @@ class Creases:
         lengths = [np.linalg.norm(x, axis=1) for x in across]
         heights = [np.einsum("kjx,kx->jk", x, given) for x in jets]
         slopes = [x[1 + axis, index] for x in heights]
-        unsures = [np.abs(x) <= ROUNDING * y for x, y in zip(slopes, lengths, strict=True)]
+        nearly = [np.abs(x) <= NEARLY * y for x, y in zip(slopes, lengths, strict=True)]
+        equal = [np.abs(x) <= ROUNDING * y for x, y in zip(slopes, lengths, strict=True)]
         facing = sum(
             np.einsum("kx,kx->k", unit_or_zero(np.cross(x[:, 1], x[:, 2])), given) for x in jets
         )
-        unsure = unsures[0] | unsures[1]
-        keep = (facing > 0.0) & (unsure | (slopes[0] * slopes[1] < 0.0))
+        unsure, between = nearly[0] | nearly[1], slopes[0] * slopes[1] < 0.0
+        keep = (facing > 0.0) & (unsure | between)
         # At a pole, x_s is 0 and the creases that end there have no direction across.
         largest = np.linalg.norm(self.sides.after[0], axis=1).max()
         keep &= np.minimum(*lengths) > SMOOTH * largest
@@ -224,9 +228,10 @@ class Creases:
         radius[index, axis] = 0.0
         for corner in self.corners:
             keep &= ~corner.is_near(rows, middle, self.lines[:, 3])
-        of_sides = np.where(unsures[0], *(np.sign(x[3] * x[5] - x[4] ** 2) for x in heights))
+        of_sides = np.where(nearly[0], *(np.sign(x[3] * x[5] - x[4] ** 2) for x in heights))
         paired = of_sides == -degrees
-        found = OnCreases(numbers, uv, jets[1][:, 0], degrees, radius, unsure, paired)
+        alone = np.where(equal[0] | equal[1], ~paired, between)
+        found = OnCreases(numbers, uv, jets[1][:, 0], degrees, radius, unsure, paired, alone)
         found = OnCreases._make(x[keep] for x in found)
         if not self.corners:
             return found
@@ -238,22 +243,28 @@ class Creases:
         """Return the points of creases at unit normals that are not among the samples `found`.
 
         A point of a crease may be among the samples if its normal is that of one side, or if it is
-        in the box of an isolated point. The samples have the fields `component` and `points`.
+        in the box of an isolated point. The samples have the fields `component`, `points` and
+        `uv_radius`.
         """
-        at, kinds = self.at(normals), found.component
+        at, kinds, errors = self.at(normals), found.component, found.uv_radius
         assert kinds is not None
+        assert errors is not None
+        tangents = np.concatenate([self.sides.first[0], self.sides.after[0]])
+        errors = 4.0 * np.linalg.norm(tangents, axis=1).max() * np.nan_to_num(errors.max(axis=1))
         keep = np.ones(len(at.numbers), np.bool_)
         size = np.ptp(self._jets(self.rows, self.ends[:, 0], 2)[:, 0], axis=0).max()
         special = found.normal_index[(kinds != Component.REGULAR) & (kinds != Component.CREASE)]
         for k in np.flatnonzero(at.unsure | np.isin(at.numbers, special)).tolist():
             own = (found.normal_index == at.numbers[k]) & (kinds != Component.CREASE)
             regular = kinds[own] == Component.REGULAR
-            reach = size * np.where(regular, BESIDE, APART)
+            reach = np.where(regular, BESIDE * size + errors[own], APART * size)
             near = np.abs(found.points[own] - at.points[k]).max(axis=1) <= reach
             if (near & ~regular).any() or (at.unsure[k] & (kinds[own] == Component.CURVE)).any():
                 keep[k] = np.isnan(at.degrees[k])
             elif at.unsure[k]:
-                keep[k] = np.isnan(at.degrees[k]) or (near & regular).any() == at.paired[k]
+                keep[k] = np.isnan(at.degrees[k]) or (
+                    at.paired[k] if (near & regular).any() else at.alone[k]
+                )
         return OnCreases._make(x[keep] for x in at)
 
     def _intervals(self, normals: Array) -> tuple[Indices, Indices, Array]:

@@ -10,7 +10,7 @@ from numpy.typing import DTypeLike
 from ..base.aliases import Array, Indices
 from ..directions.regions import Reach
 from ..samples.fields import COLUMNS, Component, dtype_of
-from ..samples.report import UndecidedNormal, joined_proof
+from ..samples.report import UndecidedNormal, count_infinite, joined_proof
 from ..samples.samples import Samples
 from .at_creases import Creases, OnCreases
 from .on_spline import Fields, OnPatches, OnSpline, in_turn
@@ -62,7 +62,8 @@ def _with_tips(
     """Return the samples at unit normals (S, 3), including those at the given tips."""
     wanted = list(dict.fromkeys([*fields, "normal_index"]))
     found = geometry.samples_at(normals, wanted, dtype, progress, density)
-    return _joined(found, [_fields(geometry, *x, normals, wanted, dtype) for x in at_tips], fields)
+    more = [_fields(geometry, *x, normals, wanted, dtype) for x in at_tips]
+    return _joined(found, more, fields, dtype)
 
 
 def with_creases(
@@ -72,8 +73,8 @@ def with_creases(
     """Return the samples `found` and the points of creases that have one of the unit normals.
 
     For each normal, points of creases are the last samples. The samples `found` must have the
-    fields `component`, `points` and `normal_index`; the result has `fields`. Corners of creases
-    with an unknown index become undecided boxes of the report.
+    fields `component`, `points`, `uv_radius` and `normal_index`; the result has `fields`, with the
+    given dtype. Corners of creases with an unknown index become undecided boxes of the report.
     """
     at = creases.besides(found, normals)
     if reach is not None:
@@ -86,7 +87,7 @@ def with_creases(
         "component": Component.CREASE,
     }  # fmt: skip
     rows = _special(more, at.numbers, normals, list(found.arrays()), dtype)
-    return _joined(found, [rows], fields, left)
+    return _joined(found, [rows], fields, dtype, left)
 
 
 def _corners(at: OnCreases) -> list[UndecidedNormal]:
@@ -99,7 +100,7 @@ def _corners(at: OnCreases) -> list[UndecidedNormal]:
 
 
 def _joined(
-    found: Samples, more: Sequence[Fields], fields: Sequence[str],
+    found: Samples, more: Sequence[Fields], fields: Sequence[str], dtype: DTypeLike,
     left: Sequence[UndecidedNormal] = (),
 ) -> Samples:  # fmt: skip
     """Return the samples `found` and those of `more` together, sorted by normal, with `fields`.
@@ -109,8 +110,11 @@ def _joined(
     parts = [found.arrays(), *more]
     index = np.concatenate([x["normal_index"] for x in parts])
     order = np.argsort(index, kind="stable")
-    arrays = {x: np.concatenate([part[x] for part in parts])[order] for x in fields}
-    report = replace(found.report, samples=len(order))
+    arrays = {
+        x: np.concatenate([y[x] for y in parts])[order].astype(dtype_of(x, dtype), copy=False)
+        for x in fields
+    }
+    report = replace(found.report, samples=len(order), infinite_curvatures=count_infinite(arrays))
     if left:
         report = replace(report, undecided=(*(report.undecided or ()), *left))
         report = replace(report, **joined_proof(report.normals or 0, [report]))

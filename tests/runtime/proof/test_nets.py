@@ -221,9 +221,11 @@ def test_normals_of_one_side_of_a_crease() -> None:
     jets = surface.jets(*(places + 1e-13 * rng.choice([-1.0, 1.0], places.shape)))
     own = unit(np.cross(jets[:, 1], jets[:, 2]))
     nearby = [known.degree(own + 1e-6 * rng.normal(size=own.shape)) for _ in range(3)]
-    for size in (0.0, 1e-10, 1e-9, 1e-8):
+    for size in (0.0, 1e-12, 1e-10, 1e-9, 1e-8):
         normals = own + size * rng.normal(size=own.shape)
-        listed = {x.normal for x in known.points(normals).report.undecided or ()}
+        found, single = (known.points(normals, dtype=x) for x in (np.float64, np.float32))
+        np.testing.assert_array_equal(single.component, found.component)
+        listed = {x.normal for x in found.report.undecided or ()}
         assert listed <= set(range(80, 90))
         wrong = set(np.flatnonzero(known.degree(normals) != np.median(nearby, axis=0)).tolist())
         assert wrong <= listed
