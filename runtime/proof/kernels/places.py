@@ -70,8 +70,10 @@ from .pairs import (
 DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19, 24)
 # Boxes on curves of solutions are set aside if more than MOST cells are undecided, or more than
 # MANY boxes, between GROWTH and AREA times as many as on the level before: along a curve, their
-# number doubles. Bisection ends if there are more than BOXES other boxes.
-MANY, GROWTH, AREA, MOST, BOXES = 256, 1.6, 3.0, 1024, 12288
+# number doubles. Bisection ends if there are more than BOXES other boxes; if from the level FINE on
+# there are more than AREA times as many as before, which rounding leaves open; or if few of them
+# are set aside again: less than FEW times the others.
+MANY, GROWTH, AREA, MOST, BOXES, FINE, FEW = 256, 1.6, 3.0, 1024, 12288, 10, 2.0**-6
 # The columns of boxes: u, v, the index of a cell, half the widths relative to those of the cell.
 BOX_COLUMNS = 5
 # A box is cut into two if one side is more than SLENDER times as long as the other, relative to the
@@ -425,14 +427,18 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
     fold, on_curve, growing = 0, 0, count > MOST
     for level in range(DEEPEST + 1):
         if count > MANY and growing:
+            before = on_curve
             on_curve, count = set_aside(tape, work, boxes, index.cells, count, on_curve, n)
+            if before > 0 and on_curve - before < FEW * count:
+                break
         if count > BOXES or on_curve + 4 * count > boxes.owner.size:
             break
         following = cut_boxes(tape, work, index, boxes, count, number, n, answers)
         if following < 0:
             return False
-        if following > 0 and fold < boxes.levels.size and level == boxes.levels[fold]:
-            fold += 1
+        rounding = level >= FINE and following > AREA * count
+        if following > 0 and (rounding or level == boxes.levels[fold]):
+            fold += level == boxes.levels[fold]
             following = decide_clusters(
                 tape, work, index, boxes, following, domain, number, n, answers
             )
@@ -442,7 +448,7 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
         for k in range(count):
             for x in range(BOX_COLUMNS):
                 boxes.now[k, x] = boxes.following[k, x]
-        if count == 0:
+        if count == 0 or rounding:
             break
     return list_rest(tape, work, index, boxes, count, on_curve, domain, number, n, answers)
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.proof.index import ProvedIndex
 
+from ...shapes import CIRCLE, WEIGHTS, conics
 from .judge import unit
 
 
@@ -53,3 +54,20 @@ def test_a_heavy_control_point_leaves_nothing_open() -> None:
 def test_cells_are_bounded_where_cutting_does_not_help(weight: float) -> None:
     index = index_of(heavy(weight))
     assert len(index.index.cells.place) + len(index.unbounded) <= 24 * 64**2
+
+
+def test_few_boxes_are_left_where_a_side_is_singular() -> None:
+    """Where x_u vanishes along a side, no cut decides the normals of the tangent cone there."""
+    r, z = [1.25, 0.75, 1.5, 1.0, 1.25, 1.0, 1.0, 1.0], [0.5, 0.5, 1.0, 1.0, 1.5, 1.5, 2.0, 2.0]
+    turn = np.linalg.qr(np.array([(3.0, 1.0, 2.0), (1.0, 4.0, 1.0), (2.0, -1.0, 5.0)]))[0]
+    net = np.array([[(a * x, a * y, b) for a, b in zip(r, z, strict=True)] for x, y in CIRCLE])
+    weights = np.outer(WEIGHTS, np.ones(len(r)))
+    knots = conics(CIRCLE), [*[0.0] * 6, 1.0, 2.0, *[3.0] * 6]
+    index = index_of(gm.Surface.from_nurbs((2, 5), knots, net @ turn.T, weights))
+    with index.room() as rooms:
+        rooms.boxes.following[:] = np.nan
+    angles, rise = (x.ravel() for x in np.meshgrid(np.linspace(0.0, 6.0, 25), [0.0, 0.3]))
+    around = unit(np.stack([np.cos(angles), np.sin(angles), rise], axis=1))
+    assert len(np.unique(index.query(around @ turn.T).undecided.numbers)) == 50
+    with index.room() as rooms:
+        assert np.isfinite(rooms.boxes.following[:, 0]).sum() < 8192
