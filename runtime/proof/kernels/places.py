@@ -84,7 +84,7 @@ SLENDER, SHRUNK = 4.0, 2.0**-5
 # within BESIDE half widths. A Hessian counts as one of rank 1 if its determinant is less than RANK
 # times the square of its larger eigenvalue. If it is not of rank 1, and the error of the solution
 # is less than SURE times the size of the box, the solution is regular: it is on no curve.
-SETTLING, BESIDE, RANK, SURE = 32, 4.0, 1e-4, 2.0**-20
+SETTLING, BESIDE, RANK, SURE = 32, 4.0, 1e-4, 2.0**-12
 
 
 class Boxes(NamedTuple):
