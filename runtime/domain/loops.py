@@ -30,9 +30,10 @@ POINTS_AT_A_TIME = 1 << 14
 MOST_PERIODS = 100
 # The number of pairs of a box and a segment in one batch.
 PAIRS_AT_A_TIME = 1 << 20
-# Loops overlap their copies if a point beside them, at this distance relative to the domain, is
-# inside twice; a line across the domain has at least SIDES such points.
+# Loops overlap their copies if some point is inside twice. The tested points are beside the loops,
+# at the distance BESIDE relative to the domain: at least SIDES along a line across it.
 BESIDE, SIDES = 1e-6, 64
+# The signs of the coordinates of the corners of a square around 0.
 CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
 # Points on an open side of the domain are moved inwards by this part of the domain.
 INSIDE = 1e-13

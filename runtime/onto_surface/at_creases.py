@@ -206,15 +206,14 @@ class Creases:
         axis = self.lines[rows, 0].astype(int)
         index = np.arange(len(rows))
         across = [x[index, 1 + axis] for x in jets]
-        lengths = [np.linalg.norm(x, axis=1) for x in across]
+        lengths = np.linalg.norm(across, axis=2)
         heights = [np.einsum("kjx,kx->jk", x, given) for x in jets]
-        slopes = [x[1 + axis, index] for x in heights]
-        nearly = [np.abs(x) <= NEARLY * y for x, y in zip(slopes, lengths, strict=True)]
-        equal = [np.abs(x) <= ROUNDING * y for x, y in zip(slopes, lengths, strict=True)]
+        slopes = np.array([x[1 + axis, index] for x in heights])
+        nearly, equal = (np.abs(slopes) <= x * lengths for x in (NEARLY, ROUNDING))
         facing = sum(
             np.einsum("kx,kx->k", unit_or_zero(np.cross(x[:, 1], x[:, 2])), given) for x in jets
         )
-        unsure, between = nearly[0] | nearly[1], slopes[0] * slopes[1] < 0.0
+        unsure, between = nearly.any(axis=0), slopes[0] * slopes[1] < 0.0
         keep = (facing > 0.0) & (unsure | between)
         # At a pole, x_s is 0 and the creases that end there have no direction across.
         largest = np.linalg.norm(self.sides.after[0], axis=1).max()
@@ -230,7 +229,7 @@ class Creases:
             keep &= ~corner.is_near(rows, middle, self.lines[:, 3])
         of_sides = np.where(nearly[0], *(np.sign(x[3] * x[5] - x[4] ** 2) for x in heights))
         paired = of_sides == -degrees
-        alone = np.where(equal[0] | equal[1], ~paired, between)
+        alone = np.where(equal.any(axis=0), ~paired, between)
         found = OnCreases(numbers, uv, jets[1][:, 0], degrees, radius, unsure, paired, alone)
         found = OnCreases._make(x[keep] for x in found)
         if not self.corners:

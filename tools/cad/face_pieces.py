@@ -20,6 +20,7 @@ from ...runtime.base.memory import check_memory
 from ...runtime.base.scales import scale_to_one
 from ...runtime.directions.regions import Reach
 from ...runtime.domain.domain import Domain
+from ...runtime.domain.loops import CORNERS
 from ...runtime.domain.trim import Trim
 from ...runtime.onto_surface.cut_components import components_in
 from ...runtime.onto_surface.on_spline import OnSpline, on_grids
@@ -61,7 +62,6 @@ CURVATURES = ("gaussian_curvature", "mean_curvature")
 # A parameter pair outside the trim is in the gap between two faces if a step in one of the
 # directions CORNERS leads into the trim. Steps are at most FAR times the domain.
 FAR = 1e-5
-CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
 # Without a proof, and for normals of lattices, points are searched on a spline. It has CELLS_A_PART
 # cells for each part between dividing lines, but at least FEWEST and at most MOST cells along each
 # parameter. Fewer cells would lose points near the boundary, because of the error of the spline.

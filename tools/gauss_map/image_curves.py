@@ -16,6 +16,7 @@ from ...runtime.base.aliases import Array, Flags
 from ...runtime.base.errors import InputError
 from ...runtime.base.kept import kept
 from ...runtime.directions.unit import as_normals
+from ...runtime.domain.loops import CORNERS
 from ...runtime.domain.trim import Trim, polygons_of
 from ...runtime.map import GaussMap
 from ...runtime.onto_surface.on_spline import OnSpline, on_grids
@@ -32,7 +33,6 @@ TOLERANCE = 1e-3
 # Parameter pairs within this distance of a boundary, relative to the domain, count as points of the
 # boundary.
 ON_BORDER = 1e-9
-CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
 
 
 def folds(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve, ...]:
