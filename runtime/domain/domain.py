@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..base.checks import as_float
 from ..base.errors import InputError, shown
+from ..base.scales import apart
 
 # The boundary condition of a side: open, periodic, mirrored (periodic, with the other parameter
 # reversed) or pole.
@@ -191,3 +192,13 @@ def _pair(entry: Periodicity, name: str) -> BoundaryPair:
             f'"periodic" and "mirrored" must stand at both ends of {name}, not {shown(entry)}.'
         )
     return cast(BoundaryPair, (low, high))
+
+
+def broken_poles(points: NDArray[np.float64], boundary: Boundary, axis: int) -> list[int]:
+    """Return the ends, 0 or 1, of u (axis 0) or v that are declared poles, but not collapsed."""
+    rows, found = np.swapaxes(points, 0, axis), list[int]()
+    for end in (0, 1):
+        row = rows[-end][~np.isnan(rows[-end]).any(axis=1)]
+        if boundary[axis][end] == "pole" and len(row) and apart(row, row[:1], points):
+            found.append(end)
+    return found

@@ -7,13 +7,12 @@ singular points.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..base.aliases import Array, Indices
-from ..base.scales import power_of_two
 from ..base.threads import over_ranges
 from ..base.tolerances import NORMAL_ERROR, NORMAL_NOISE
 from ..spline.kernels.jets import evaluate_jets
@@ -31,7 +30,7 @@ from .kernels.refine import (
     begin,
     newton,
 )
-from .pole_charts import PoleChart, pole_charts
+from .pole_charts import PoleChart, near_poles, pole_charts
 
 Jets = Callable[[Array, Array], Array]
 
@@ -199,20 +198,3 @@ def evaluate_on_surface(
 
     list(over_ranges(work, count, ROWS_AT_A_TIME, threads))
     return points, normals, gaussian, mean
-
-
-def near_poles(
-    charts: list[PoleChart], scale: float, uv: Array
-) -> Iterator[tuple[Indices, Array, Array, Array]]:
-    """For each chart that is needed, yield the indices (k,) of the rows of `uv` that need it.
-
-    With the indices come the unit normals (k, 3), K (k,) and H (k,) at these parameters.
-    """
-    for chart in charts:
-        rows = np.flatnonzero(chart.next_to(uv))
-        if len(rows):
-            s, t = chart.places(uv[rows]).T.copy()
-            n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
-            scales = np.array([scale, *[power_of_two(chart.cell)] * 2])
-            evaluate_jets(chart.jets(s, t), scales, n, K, H)
-            yield rows, n * chart.orientation, K, H * chart.orientation

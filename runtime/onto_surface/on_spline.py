@@ -23,7 +23,7 @@ from ..base.scales import check_range
 from ..base.threads import over_ranges
 from ..directions.regions import Reach
 from ..domain.trim import samples_inside, with_uv
-from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
+from ..samples.fields import FLOAT_NAMES, bytes_of, count_of, new_field
 from ..samples.report import SamplingReport, UndecidedNormal, sampling_report
 from ..samples.samples import Samples
 from ..search.hits import SIGN, fill, kinds_of
@@ -43,11 +43,6 @@ Fields = dict[str, NDArray[Any]]
 AT_A_TIME = 1 << 12
 # At a pole, normals of a spline are evaluated at this distance from it, relative to the domain.
 BESIDE_POLE = 1e-6
-
-
-def count_of(arrays: Fields) -> int:
-    """Return the number of samples, given the arrays of their fields."""
-    return len(next(iter(arrays.values())))
 
 
 class FieldsOfSamples(NamedTuple):

@@ -12,7 +12,7 @@ from ..base.errors import InputError
 from ..base.kept import kept
 from ..domain.trim import samples_inside
 from ..fitting.fit import patches_of
-from ..samples.fields import FLAG_NAMES
+from ..samples.fields import FLAG_NAMES, count_of
 from ..samples.report import PLACES, UndecidedNormal
 from ..search.search import Hits
 from ..spline.developable import CellMeasure
@@ -23,7 +23,7 @@ from ..surface.surface import Surface
 from .kernels import nodes as kernels
 from .moved_samples import as_fields, moved_samples, part_of, unmoved
 from .newton import evaluate_on_surface
-from .on_spline import Array, Fields, FieldsOfSamples, OnPatches, OnSpline, count_of
+from .on_spline import Array, Fields, FieldsOfSamples, OnPatches, OnSpline
 from .pole_charts import PoleChart, pole_charts
 from .repeats import kept_once
 

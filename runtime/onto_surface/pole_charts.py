@@ -5,13 +5,15 @@ in s = r cos φ, t = r sin φ.
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from ..base.aliases import Array, Flags
+from ..base.aliases import Array, Flags, Indices
 from ..base.scales import power_of_two
+from ..spline.kernels.jets import evaluate_jets
 from ..surface.derivatives import differences
 from ..surface.surface import Surface
 from .kernels.refine import chart_jets, jet_of_pole
@@ -138,3 +140,20 @@ def pole_charts(surface: Surface, cells: tuple[int, int]) -> list[PoleChart]:
             if surface.boundary[axis][k] == "pole":
                 charts.append(PoleChart(surface, 1 - axis, ends[k], ends[1 - k], cells[axis]))
     return charts
+
+
+def near_poles(
+    charts: list[PoleChart], scale: float, uv: Array
+) -> Iterator[tuple[Indices, Array, Array, Array]]:
+    """For each chart that is needed, yield the indices (k,) of the rows of `uv` that need it.
+
+    With the indices come the unit normals (k, 3), K (k,) and H (k,) at these parameters.
+    """
+    for chart in charts:
+        rows = np.flatnonzero(chart.next_to(uv))
+        if len(rows):
+            s, t = chart.places(uv[rows]).T.copy()
+            n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
+            scales = np.array([scale, *[power_of_two(chart.cell)] * 2])
+            evaluate_jets(chart.jets(s, t), scales, n, K, H)
+            yield rows, n * chart.orientation, K, H * chart.orientation

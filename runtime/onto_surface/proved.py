@@ -21,7 +21,15 @@ from ..domain.trim import samples_inside, with_uv
 from ..proof.index import CELLS, ProvedIndex, ProvedPlaces, Undecided
 from ..proof.kernels.answers import KINDS
 from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places
-from ..samples.fields import FLAG_NAMES, Component, bytes_of, dtype_of, regular, row_shape
+from ..samples.fields import (
+    FLAG_NAMES,
+    Component,
+    bytes_of,
+    count_of,
+    dtype_of,
+    regular,
+    row_shape,
+)
 from ..samples.report import SamplingReport, UndecidedNormal, count_infinite
 from ..samples.samples import Samples
 from ..search.search import developable_patches
@@ -31,10 +39,9 @@ from ..surface.sides import closed_points, with_found_sides
 from ..surface.surface import Surface
 from ..tape.tapes import jets_of
 from .cut_components import components_in
-from .newton import near_poles
-from .on_spline import Fields, count_of, in_turn
+from .on_spline import Fields, in_turn
 from .on_surface import OnSurface, geometry_of
-from .pole_charts import pole_charts
+from .pole_charts import near_poles, pole_charts
 from .reach import with_conditions
 
 PLACES_AT_A_TIME = 1 << 14

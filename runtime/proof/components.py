@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.aliases import Array, Indices
-from .kernels.answers import CURVE, ISOLATED, OPEN_BOX, WHERE, Answers
+from .kernels.answers import CURVE, ISOLATED, OPEN_BOX, WHERE, Answers, Sorted
 from .kernels.degree import LARGEST
-from .kernels.sorting import Sorted
 
 # Two boxes count as touching if their distance is at most the larger of their widths, or at most
 # this share of the domain.

@@ -30,13 +30,22 @@ from .apexes import Apex, apexes_of
 from .components import Undecided, boxes_of, components_of, with_kinds
 from .discs import PoleDisc
 from .grid_lines import joints_and_creases, lines_of
-from .kernels.answers import BORDER, BOX, Answers, merge_places
+from .kernels.answers import (
+    BORDER,
+    BOX,
+    Answers,
+    Sorted,
+    count_places,
+    merge_places,
+    order_places,
+    put_places,
+    start_normals,
+)
 from .kernels.cell_bounds import OPEN, REACH, WIDE, CellBounds, Work, cut_cells
 from .kernels.components import indices_around
 from .kernels.discs import decide_discs
 from .kernels.evaluated_pairs import Index, Lines, Outcome, Tiles, evaluate_pairs
 from .kernels.places import Boxes, decide_normals
-from .kernels.sorting import Sorted, count_places, order_places, put_places, start_normals
 from .poles import Cap, poles_of
 
 # Cells that are not regular (`is_done` in kernels/cell_bounds.py) are cut into four, at most LEVELS

@@ -274,3 +274,8 @@ def checked_dtype(dtype: DTypeLike) -> np.dtype[np.floating]:
         if dtype is not None and np.dtype(dtype) in known:
             return known[known.index(np.dtype(dtype))]
     raise InputError(f"dtype must be float32 or float64, not {shown(dtype)}.")
+
+
+def count_of(arrays: Mapping[str, NDArray[Any]]) -> int:
+    """Return the number of samples, given the arrays of their fields."""
+    return len(next(iter(arrays.values())))

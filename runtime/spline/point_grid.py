@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from ..base.advice import NO_CLOUDS
 from ..base.checks import as_float
 from ..base.errors import InputError, shown
-from ..domain.domain import Boundary, Domain, cells_between, closes
-from .poles import broken_poles
+from ..domain.domain import Boundary, Domain, broken_poles, cells_between, closes
 from .quasi_interpolant import fit_grid
 from .spline import Spline
 

@@ -17,7 +17,6 @@ import numpy as np
 from ...generated.spline import beyond_edge
 from ..base.aliases import Array, Flags
 from ..base.formula_calls import python_function
-from ..base.scales import apart
 from ..domain.domain import Boundary, BoundaryPair
 
 # The number of pairs a, b from which the plane closest to the ring is chosen.
@@ -27,16 +26,6 @@ CANDIDATES = 4096
 # the plane of the ring; with shorter vectors, points x a + y b are closer to the coefficients of
 # the ring.
 BALANCE = 1.0 / 32.0
-
-
-def broken_poles(points: Array, boundary: Boundary, axis: int) -> list[int]:
-    """Return the ends, 0 or 1, of u (axis 0) or v that are declared poles, but not collapsed."""
-    rows, found = np.swapaxes(points, 0, axis), list[int]()
-    for end in (0, 1):
-        row = rows[-end][~np.isnan(rows[-end]).any(axis=1)]
-        if boundary[axis][end] == "pole" and len(row) and apart(row, row[:1], points):
-            found.append(end)
-    return found
 
 
 def spread_missing(bad: Flags, boundary: Boundary, rows: int) -> None:

@@ -21,8 +21,7 @@ from ..base.errors import SurfaceError
 from ..base.evaluation import returned
 from ..base.formula_calls import python_function
 from ..base.scales import ROUNDING, SAME_POINT, apart, extent_of, not_too_large
-from ..domain.domain import Assumed, Boundary, closes
-from ..spline.poles import broken_poles
+from ..domain.domain import Assumed, Boundary, broken_poles, closes
 from .surface_values import SurfaceValues
 
 Values = TypeVar("Values", bound=SurfaceValues)
