@@ -28,10 +28,10 @@ PAIRS_AT_A_TIME = 1 << 10
 # The number of pairs that are decided together on Python integers. It bounds the memory: a pair has
 # many such integers, each of about a hundred bytes.
 LONG_PAIRS_AT_A_TIME = 1 << 14
-# A distance in the parameter plane, in cells: hits of one normal at the open boundary that are
-# closer than this count as one point, and a hit that is closer to a pole, or to a corner of a net,
-# counts as there. The distance is far more than rounding errors, which are below 1e-14, and far
-# less than a cell.
+# A distance in the parameter plane, in cells (in nets, in parameters of a patch). Hits of one
+# normal at the open boundary that are closer to each other count as one point. A hit that is closer
+# to a pole, or to a corner of a net, counts as a hit at the pole or corner. The distance is far
+# more than rounding errors, which are below 1e-14, and far less than a cell.
 SAME_PLACE = 1e-6
 
 
@@ -41,8 +41,8 @@ class Decision:
 
     `which` (k,) are the indices of the hits among all pairs. The columns of `local` (k, 6) are the
     parameters u, v of the point in its patch, the sign of K, the parameters at which curvatures are
-    evaluated (u, v again, or those of a nearby point if the point is singular), and the code of
-    REGULAR.
+    evaluated (u, v again, or those of a nearby point if the point is singular), and the kind of the
+    component, which is REGULAR.
     """
 
     which: NDArray[np.int64]
@@ -60,8 +60,8 @@ def decide(
     """Decide which of the pairs (patches[k], normals[k]) are hits.
 
     `numbers[k]` is the index of the normal; equal normals with different indices each have their
-    own hits. `forgiven[k]` is the amount by which W may have the wrong sign at the open boundary of
-    the domain, for the scaled spline; it is 0 for a patch that does not touch this boundary.
+    own hits. At the open boundary of the domain, W may have the wrong sign if |W| is at most
+    `forgiven[k]`, for the scaled spline; this is 0 for a patch that does not touch the boundary.
     """
     local, size, signs = decided_forms(spline, patches, normals, threads)
     inside = (signs[:, 0] != 0) & (signs[:, 0] == signs[:, 1]) & (signs[:, 1] == signs[:, 2])
@@ -150,7 +150,7 @@ def uncancelled(
 
 
 def _poles_at(spline: Spline, places: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the index of the pole at each position (k, 2), given in cells; −1 where none is."""
+    """Return the index of the pole at each position (k, 2), given in cells, or −1."""
     poles = np.full(len(places), -1)
     for axis, end in np.ndindex(2, 2):
         if spline.boundary[axis][end] == "pole":
@@ -171,7 +171,8 @@ def first_of_each_place(
     """Return a mask of the hits to keep.
 
     A hit `near` the open boundary is left out if it coincides with another hit that is kept: both
-    have the same normal, and equal positions `place` (k, d) up to the `periods` (d,).
+    have the same normal, and positions `place` (k, d) that differ by less than SAME_PLACE, modulo
+    the `periods` (d,).
     """
     keep = np.ones(len(place), dtype=bool)
     if not near.any():

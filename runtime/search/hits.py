@@ -92,7 +92,7 @@ class Hits:
         return Hits(self.keys[rows], place[kept], self.local[kept], self.developable)
 
     def merged(self, others: Hits) -> Hits:
-        """Return these hits together with others, which are other pairs."""
+        """Return these hits together with others; no pair is in both."""
         order = np.argsort(np.concatenate([self.keys, others.keys]), kind="stable")
         place = np.empty_like(order)
         place[order] = np.arange(len(order))
@@ -130,8 +130,8 @@ def fill(
 ) -> dict[str, NDArray[Any]]:
     """Return the requested fields of the samples at hits; `normals` (S, 3) are those of the search.
 
-    Floating-point fields have the type `dtype`. A field is written into the array of the same name
-    in `memory` if that array is large enough, and else into a new one.
+    Floating-point fields have the type `dtype`. A field of a spline on a grid is written into the
+    array of the same name in `memory` if that array fits; other fields are new arrays.
     """
     if isinstance(spline, NetSpline):
         known = {"normal_index": hits.normal_index, "patch_index": hits.patch_index}
@@ -168,7 +168,10 @@ def kinds_of(
 
 
 def without_curvature(fields: dict[str, NDArray[Any]], hits: Hits) -> dict[str, NDArray[Any]]:
-    """Return the fields with K = 0, with its sign, for components that are no regular points."""
+    """Return the fields with K set to ±0, its sign kept, where components are not regular points.
+
+    The arrays of `fields` are changed.
+    """
     if "gaussian_curvature" in fields:
         fields["gaussian_curvature"][hits.special] *= 0.0
     return fields

@@ -1,12 +1,12 @@
 """Exact decisions whether a patch of a spline of nets has a normal, and the fields of its samples.
 
 The signs of the forms U, V, W at a normal decide whether a patch has it (paper, Sect. 3.2). If
-rounding leaves the sign of a form open, it is replaced by that of the boundary cone of the joint
-at this edge: one quadratic form for both patches of the joint, evaluated on integers. The boundary
-cones of all edges at a vertex contain the same normal there, exactly. Ties are broken by an
-infinitesimal displacement of the normal, the same for all patches. Thus the Gaussian images of the
-patches have neither gaps nor overlaps. At a pole the images are wedges. The image of a patch with a
-collapsed edge is a curve, and no normal is decided to be in it.
+rounding leaves the sign of a form open, it is replaced by the sign for the boundary cone of the
+joint at this edge: one quadratic form for both patches of the joint, evaluated on integers. The
+boundary cones of all edges at a vertex contain the normal of this vertex, exactly. Ties are broken
+by an infinitesimal displacement of the normal, the same for all patches. Thus the Gaussian images
+of the patches have neither gaps nor overlaps. At a pole the images are wedges. The image of a patch
+with a collapsed edge is a curve, and such a patch has no hits.
 """
 
 from collections.abc import Sequence
@@ -88,8 +88,8 @@ def decide_in_nets(
 ) -> Decision:
     """Decide which of the pairs (patches[k], normals[k]) are hits, by boundary cones of edges.
 
-    `numbers[k]` is the index of the normal. At an edge on the boundary of the spline, a pair is a
-    hit if the form of the edge is 0 up to its error; of such hits at one corner, one is kept.
+    `numbers[k]` is the index of the normal. The form of an edge on the boundary of the spline may
+    be 0 up to its error; of such hits at one corner, one is kept.
     """
     _, *forms = python_function(formulas.forms)(spline._patch(patches), vector(normals))
     values, errors = np.stack(forms, axis=1), errors_of(spline)[patches, None]
@@ -112,9 +112,9 @@ def decide_in_nets(
 def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -> Flags:
     """Return whether each normal agrees with the normal of its patch at the parameters `places`.
 
-    The angle between both normals must be less than 90 degrees. At singular points, where the
-    tangents are perpendicular to a circle of directions, and at tips, the cosine of the angle must
-    be more than SAME_NORMAL.
+    The angle between both normals must be less than 90 degrees. At singular points, where a circle
+    of directions is perpendicular to the tangents, and in patches that touch a tip, the cosine of
+    the angle must be more than SAME_NORMAL.
     """
     singular, _, N = spline._regular_places(patches, places)
     tips = tips_of(spline)
@@ -157,11 +157,12 @@ def _decided(
 def _decide_at_poles(
     spline: NetSpline, patches: Indices, normals: Array, inside: Flags, local: Array
 ) -> None:
-    """Decide the pairs whose normal is near that of a pole of their patch; write the results.
+    """Decide the pairs whose normal is near that of a pole of their patch.
 
     Around a pole the Gaussian image of a patch is a wedge between two planes. Each plane belongs to
     an edge that ends at the pole, and contains the normals at both ends of this edge. Signs with
     respect to planes are exact, whereas the forms of the patches are rounding errors near the pole.
+    The results are written to `inside` and `local`.
     """
     topology = spline.topology
     shared, fan = topology.corners
@@ -210,11 +211,11 @@ def _places(spline: NetSpline, patches: Indices, normals: Array) -> Array:
 def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.int8]:
     """Return the signs (k,) of the boundary cones of edges at normals (k, 3).
 
-    Edge j of patch p has the index 3 p + j in `rows`. Its boundary cone is the form V of the patch
-    after a permutation that makes this edge the edge v = 0. The tangents at the ends of the edge
-    are first projected onto the planes perpendicular to the normals there, which all patches at a
-    vertex share. The other patch of the joint has the opposite sign. For an edge with an end at a
-    pole, see `_polar_signs`.
+    Edge j of patch p has the index 3 p + j in `rows`. The control points of the patch that owns the
+    joint are permuted so that the edge becomes v = 0. The tangents at its two ends are projected
+    onto the tangent planes of these vertices; all patches at a vertex share one normal. The
+    boundary cone is then V = 0, and the result is the sign of V, with the opposite sign for the
+    other patch of the joint. For an edge with an end at a pole, see `_polar_signs`.
     """
     topology = spline.topology
     owner, side = topology.owner[0][rows], topology.owner[1][rows]
@@ -248,7 +249,7 @@ def _polar_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np
 
     At the pole the tangents along and across the edge are parallel, and the form V of the edge is a
     product of two linear forms of the normal n. The first one vanishes in a plane that contains the
-    normals at both ends, and with them all normals along the edge; the second one is n · tangent.
+    normals at both ends, and thus all normals along the edge; the second one is n · tangent.
     """
     topology = spline.topology
     shared, fan = topology.corners

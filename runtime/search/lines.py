@@ -1,9 +1,9 @@
-"""Points of a spline with one normal that are connected: a curve, a region or a singular point.
+"""Connected sets of points of a spline with the same normal: curves, regions and flat points.
 
 In a patch, n·p_u and n·p_v are linear in u and v. If the matrix of their derivatives has rank 1,
-both may be 0 on a line: all its points have the normal n. Exact arithmetic makes some points of
-such a line hits, or none. Here each connected set of lines becomes one hit, and so do hits that are
-one point, such as a flat point where several patches meet.
+both may be 0 on a line: all its points have the normal n or −n. Exact arithmetic makes some points
+of such a line hits, or none. Here each connected set of lines becomes one hit, and so do several
+hits at one point, such as a flat point where patches meet.
 """
 
 from __future__ import annotations
@@ -23,24 +23,25 @@ from ..spline.nets import AnySpline, NetSpline
 from .hits import SIGN, Hits
 from .kernels.lists import NUMBER
 
-# Normals are displaced by BESIDE times the rounding error of coordinates: the angle by which
-# rounding turns normals is about that error. DIRECTION is in no plane of symmetry.
+# Normals are displaced by BESIDE times the rounding error of coordinates, which turns normals by
+# angles of about its own size. DIRECTION is in no usual plane of symmetry.
 BESIDE, DIRECTION = 64.0, np.array([1.0, 1e-2, 1e-4])
-# Points of a patch this near to a corner or an edge, in u and v, are on it.
+# Points of a patch that are closer than this to a corner or an edge, in u and v, count as on it.
 TOUCHING = 1e-6
 # The parameters u, v of the corners of a patch, and of its centre.
 CORNERS, CENTRE = np.eye(3)[:, :2], np.full(2, 1.0 / 3.0)
-# For each edge, the corners at its start and its end. The control points at corners, and of edges.
+# For each edge, the corners at its start and its end. The indices of the control points at corners,
+# followed by the middle control points of edges.
 NEXT, LAST = [1, 2, 0], [2, 0, 1]
 NODES = [0, 1, 2, 5, 4, 3]
 
 
 class Lines(NamedTuple):
-    """Lines, points and whole patches with one normal, for some pairs of a normal and a patch.
+    """Lines, points or whole patches on which the normal is constant, one for each of `keys`.
 
-    `touched` (k, 6) says which corners and edges of its patch a line touches. `at` (k, 2) are u and
-    v at the middle of the line, and `ends` (k,) is the number of ends: 1 for a point, 0 if the line
-    misses its patch.
+    A key is (index of the normal) << 32 | index of the patch. `touched` (k, 6) says which corners
+    and edges of its patch a line touches. `at` (k, 2) are u and v at the middle of the line. `ends`
+    (k,) is 2 for a line, 1 for a point, 3 for a whole patch, and 0 if the line misses its patch.
     """
 
     keys: Indices
@@ -50,10 +51,10 @@ class Lines(NamedTuple):
 
 
 def lines_of(spline: AnySpline, keys: Indices, normals: Array) -> Lines:
-    """Return the lines of the given pairs; `normals` are those of the search.
+    """Return the lines of the pairs `keys`; `normals` are those of the search.
 
-    The normals of a line equal that of the pair up to the rounding of coordinates. Patches with a
-    singular corner, at poles and tips, have none here.
+    The normals along a line equal that of the pair up to the rounding of coordinates. Patches with
+    a singular corner, at poles and tips, are left out.
     """
     patch, n = spline._patch(keys & NUMBER), normals[keys >> 32]
     A, B, C, P, Q = forms = python_function(formulas.linear_forms)(patch, vector(n))
@@ -101,7 +102,7 @@ def points_of(hits: Hits, which: Indices) -> Lines:
 
 
 def meeting(spline: AnySpline, hits: Hits) -> Indices:
-    """Return the indices of normals with several exactly decided hits at one point."""
+    """Return the indices of normals with several exactly decided hits at one corner or edge."""
     numbers = hits.normal_index[hits.exact]
     again = numbers[1:] == numbers[:-1]
     points = points_of(hits, np.flatnonzero(np.append(again, False) | np.append(False, again)))
@@ -123,9 +124,9 @@ def with_components(
 ) -> Hits:
     """Return the hits with one hit for each connected set of lines, and of hits at one point.
 
-    Only normals with the given indices have such sets. The index of a set is the sum of the signs
-    of K of the hits in it; if it has lines, these are hits in `counted`, of displaced normals. The
-    index of lines that end in the border is unknown, and 0 here.
+    Only the normals with the indices `numbers` have such sets. The index of a set is the sum of the
+    signs of K of its hits, or, for a set with lines, of the hits of displaced normals, `counted`,
+    in it. The index of lines that touch the border is unknown; it is set to 0.
     """
     own, which = (
         np.flatnonzero(np.isin(x.normal_index[x.exact], numbers)) for x in (hits, counted)
@@ -149,7 +150,7 @@ def with_components(
     outer[group[(every.touched & border).any(axis=1)]] = True
     degree = np.where(most < 0, degree, beside * ~outer)
     special = (most >= 0) | (np.bincount(group[first:last], minlength=count) > 1)
-    # The first line of a set, if possible one with two ends, or else its first hit, stands for it.
+    # The first of the lines with most ends represents its set; without lines, the first hit does.
     rows = np.lexsort(
         (every.keys[:last], -every.ends[:last], np.arange(last) >= first, group[:last])
     )
@@ -166,7 +167,8 @@ def with_components(
 def nodes_of(spline: AnySpline, patches: Indices) -> tuple[Indices, Flags]:
     """Return a number for each corner and edge (k, 6) of patches, and whether it is on the border.
 
-    What patches share has one number. Creases belong to the border.
+    A corner or edge of several patches has the same number in all of them. Creases belong to the
+    border.
     """
     if isinstance(spline, NetSpline):
         numbers, edges = spline.triangles[:, NODES], spline.topology.on_border.reshape(-1, 3)
@@ -190,9 +192,10 @@ def nodes_of(spline: AnySpline, patches: Indices) -> tuple[Indices, Flags]:
 
 
 def _connected(lines: Lines, nodes: Indices) -> Indices:
-    """Return the number of the connected set of each line; `nodes` are those of their patches.
+    """Return the number of the connected set of each line.
 
     Lines of one normal are connected if they are in one patch, or touch the same corner or edge.
+    `nodes` (k, 6) are the numbers of the corners and edges of their patches, from `nodes_of`.
     """
     row, place = np.nonzero(lines.touched)
     shared = lines.keys[row] >> 32 << 32 | nodes[row, place]

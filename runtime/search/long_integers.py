@@ -1,8 +1,8 @@
 """The forms U, V, W, D of patches at normals, evaluated on Python integers of any length.
 
-They decide the pairs of a patch and a normal for which the integers of kernels are too short.
-Coefficients and normals are binary fractions, and the formulas need only +, − and ×, so that the
-sign of every form is exact.
+They decide the pairs of a patch and a normal for which the integers of fixed length in
+`kernels.decide` are too short, and all undecided pairs in nets. Coefficients and normals are binary
+fractions, and the formulas need only +, − and ×, so that the sign of every form is exact.
 """
 
 import numpy as np

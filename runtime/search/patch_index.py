@@ -30,11 +30,12 @@ from .kernels.pieces import CHORD, DATA_BOUND, Pieces, write_net_pieces, write_p
 # An index of all patches takes 240 bytes a patch, and is cached with the spline. A spline with more
 # than MOST_PATCHES patches has an index for each range of patches; each search makes them anew.
 MOST_PATCHES = 1 << 20
-# The rounding of coordinates counts up to this part of a cell: with more of it, the search would
-# take regular points for lines, or leave all pairs of a patch and a normal to exact decisions.
+# Rounding errors of coordinates are assumed to be at most this fraction of a cell. With larger
+# ones, the search would take regular points for lines, or leave all pairs of a patch and a normal
+# to exact decisions.
 MOST_NOISE = 2.0**-20
 PIECES_AT_A_TIME, NORMALS_AT_A_TIME = 1 << 12, 1 << 16
-# Bins are halved until a piece is listed in more than this number of bins on average.
+# Bins are halved as long as a piece is listed in at most this number of bins on average.
 BINS_PER_PIECE = 7.0
 # The initial capacity of the array of keys (bin, piece).
 KEYS_PER_PIECE = 16
@@ -190,7 +191,7 @@ def _level_of(cones: Array, faces: int, tangent: float) -> int:
 
 
 def ordered(normals: Array, lists: Lists, threads: int | None) -> Indices:
-    """Return keys bin << 32 | index of normals (S, 3), sorted by bins of about NORMALS_PER_BIN.
+    """Return keys bin << 32 | index of normals (S, 3), sorted by bins.
 
     The bins in the keys are the finest ones. The keys are sorted only by coarser bins, which hold
     at least NORMALS_PER_BIN normals on average. Normals outside all bins have no key.

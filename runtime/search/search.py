@@ -28,7 +28,7 @@ from .kernels.search import PATCHES, Memory, Pairs, search
 from .lines import beside_lines, lines_of, meeting, with_components
 from .patch_index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 
-# The largest number of normals that are searched together, and of hits that are sorted together.
+# The largest numbers of normals that are searched together, and of hits that are sorted together.
 NORMALS_AT_A_TIME, MOST_HITS = 1 << 20, 1 << 23
 # The number of normals that a thread takes at a time, and the initial capacity of its arrays of
 # keys.
@@ -45,8 +45,9 @@ def find(
 ) -> Hits:
     """Return all hits: pairs of one of the unit normals (S, 3) and a patch that has this normal.
 
-    Where all points of a line have one normal, some of its points are hits, as if the normal were
-    displaced. With `components`, each connected set of such points has one hit.
+    Where the normal is constant along a line, the hits are those of a slightly displaced normal:
+    some points of the line, or none. With `components`, each connected set of points with the same
+    normal has one hit.
     """
     check_memory("search", len(normals))
     return Hits.joined(list(find_in_turn(spline, normals, threads, progress, components)))
@@ -101,7 +102,7 @@ def _keys(
     """Return the keys of certain hits and of undecided pairs, and error bounds for the latter.
 
     An error bound holds for the forms U, V, W of the patch of a pair. The result is None if several
-    normals have more than MOST_HITS hits together.
+    normals have more than MOST_HITS keys together.
     """
     certain, undecided, bounds, total = [], [], [], 0
     for first in range(0, spline.patches, MOST_PATCHES):
@@ -171,7 +172,7 @@ def _with_points(
     spline: AnySpline, normals: Array, certain: list[Indices], undecided: Indices,
     bounds: Array, developable: int, threads: int | None,
 ) -> Hits:  # fmt: skip
-    """Return the hits as `_decided`, but of displaced normals where lines in nets have a normal."""
+    """Return the hits as `_decided` does, but displace normals that lines in nets have."""
     hits = _decided(spline, normals, certain, undecided, bounds, developable, threads)
     if len(undecided) == 0 or not isinstance(spline, NetSpline):
         return hits
@@ -186,7 +187,7 @@ def _with_components(
     spline: AnySpline, normals: Array, certain: list[Indices], undecided: Indices,
     bounds: Array, developable: int, threads: int | None,
 ) -> Hits:  # fmt: skip
-    """Return the hits as `_decided`, but one hit for each component; see `with_components`."""
+    """Return the hits as `_decided` does, but one for each component; see `with_components`."""
     hits = _decided(spline, normals, certain, undecided, bounds, developable, threads)
     if len(undecided) == 0:
         return hits

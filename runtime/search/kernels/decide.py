@@ -22,8 +22,7 @@ from ...spline.kernels.patch import EAST, NORTH, SOUTH, SOUTHEAST, SOUTHWEST, WE
 from .wide_integers import MANTISSA, rounded, wide
 
 # The numbers of limbs (64 bits) of coefficients and of normals, as lengths of tuples. Normals need
-# more: at corners of patches along an axis, their components may be rounding errors of rounding
-# errors.
+# more: near a coordinate axis, their components may be rounding errors of rounding errors.
 PATCH_LIMBS, NORMAL_LIMBS = (0, 0), (0, 0, 0)
 # The number of spare bits, which weights and sums need.
 SPARE = 6

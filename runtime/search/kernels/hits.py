@@ -272,9 +272,9 @@ def fill_known(
 ):  # fmt: skip
     """Write the fields of the samples `which` (k,) at known parameters; see `fill_samples`.
 
-    `keys` (k,) are those of the samples. The columns of `local` (k, 5) are u, v, the sign of K, and
-    the parameters at which curvatures are evaluated: u, v, or those of a point nearby if the point
-    is singular.
+    `keys` (k,) are the keys of the samples. The first columns of `local` (k, 6) are u, v, the sign
+    of K, and the parameters at which curvatures are evaluated: u, v, or those of a nearby point if
+    the point is singular.
     """
     columns = mu.shape[1] - 2
     frame = (frame[0], frame[1], frame[2], frame[3])

@@ -2,7 +2,7 @@
 
 Bins are squares on the faces of a cube around the sphere. If all cones lie in a cap, only the face
 +z has bins, and a linear map, the frame (3, 3), takes the cap to this face. On each face, bins are
-numbered along a Morton curve, so that the leading bits of a number are the bin of a coarser level.
+numbered along a Morton curve, so that the leading bits of a number are that of a coarser bin.
 Keys are sorted by their leading bits with a stable counting sort.
 """
 

@@ -1,9 +1,9 @@
 """Pieces of a surface, each with a cone of its normals: patches of a spline, or cells of a surface.
 
-The normals of a patch are combinations of its control normals with positive weights. So a cone that
-contains all control normals contains all normals. A cone is given by its axis and its chord: the
-largest distance between the unit axis and a unit vector of the cone. In addition, a slab between
-two parallel planes bounds long thin Gaussian images.
+The normals of a patch are combinations of its control normals with positive weights, so that a cone
+that contains all control normals contains all normals. A cone is given by its axis and its chord:
+the largest distance between the unit axis and a unit vector of the cone. In addition, a slab
+between two parallel planes bounds long thin Gaussian images.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ def put_cone(pieces, k, patch, tangents, noise, angle, net):
         regular = size > SHORT_CONTROL_NORMAL * square
         inverse = 1.0 / size if regular else 0.0
         set_row(net, m, Vector(n.x * inverse, n.y * inverse, n.z * inverse))
-        # At points of lines, n·p_u and n·p_v are up to about 2 `noise`: see `lines_of`.
+        # Where a line has the normal n, |n·p_u| and |n·p_v| may be about 2 `noise`: see `lines_of`.
         error = ANGLE_ERROR + (ANGLE_ERROR * square + 8.0 * noise * tangent) * inverse
         net[m, 3] = angle + error if regular else math.inf
     write_cone(net, pieces.cones[k])
@@ -263,10 +263,10 @@ def tangent_bounds(patch):
 
 @jit
 def least_cosine(mu, scale, axis):
-    """Return a lower bound of the cosines between a unit vector (3,) and the normals of the spline.
+    """Return the least cosine between a unit vector (3,) and the control normals of the spline.
 
-    The bound is the least cosine with a control normal. After the first negative cosine, no more
-    patches are examined.
+    If it is not negative, it is a lower bound of the cosines with all normals of the spline. After
+    the first patch with a negative cosine, no more patches are examined.
     """
     columns = mu.shape[1] - 2
     towards = Vector(axis[0], axis[1], axis[2])

@@ -27,11 +27,11 @@ from .pieces import BOUND, CHORD, DATA_BOUND, EVERYTHING, REST_S, REST_T, WIDTH
 # The kinds of pieces.
 PATCHES, CELLS = 0, 1
 
-# The number of normals of a tile, and how many are tested at a time.
+# The number of normals of a tile, and the number of normals that are tested at a time.
 LANES, STEP = 64, 8
 # Rows of a tile: x, y, z of the normals, and their codes.
 Y, Z, CODE = (np.uint64(k * LANES) for k in range(1, 4))
-# The codes of a normal and a piece: the piece lacks it, has it, or may have it, due to rounding.
+# The codes of a normal and a piece: the piece lacks the normal, has it, or may have it.
 NO, YES, UNDECIDED = 0.0, 1.0, 2.0
 
 
@@ -155,7 +155,8 @@ def test_tile(cone, row, tile, count):
 
     The patch has a normal if its forms U, V, W and D have the same sign there (paper, Sect. 3.2),
     and if the normal is in the cone. The forms alone do not distinguish a normal from its opposite.
-    A normal stays undecided if the rounding of coordinates may make it that of a line.
+    A normal is also undecided if, up to the rounding of coordinates, a line of the patch may have
+    it.
     """
     patch = patch_in(row)
     axis, square = Vector(cone[0], cone[1], cone[2]), cone[CHORD] * cone[CHORD]
@@ -201,11 +202,11 @@ def exclude_tile(cone, row, tile, count):
 
 @loop
 def look_again(row, tile, count):
-    """Reject normals of a tile of which the patch has only the opposite.
+    """Reject normals of a tile of which the patch has only the opposites.
 
-    It is needed for a patch without a narrow cone, since the forms do not distinguish a normal from
-    its opposite. Each normal with the code YES is compared with the oriented normal of the patch at
-    the parameters of the hit.
+    A patch without a narrow cone needs this, since the forms do not distinguish a normal from its
+    opposite. Each normal with the code YES is compared with the oriented normal of the patch at the
+    parameters of the hit.
     """
     patch = patch_in(row)
     for k in range(count):

@@ -80,7 +80,7 @@ def shifted(_: Any, mantissa: Any, shift: Any, limbs: Any) -> Any:
 
 @intrinsic
 def leading(_: Any, x: Any) -> Any:
-    """Return the first 63 bits of the modulus of a number, and the exponent of the last of them.
+    """Return the first 63 bits of a number, with its sign, and the exponent of the last of them.
 
     The last bit is set if any bit beyond it is set, so that the result rounds like the number
     itself.
