@@ -38,8 +38,8 @@ EDGE_NORMALS = ((3, 4, 5), (5, 2, 0), (0, 1, 3))
 PLACES = np.linspace(0.0, 1.0, 9)
 # Points that are closer than this, relative to the largest coordinate, count as the same point.
 SAME_POINT = 2.0**-36
-# The nearest point of an edge to a corner is the nearest of this many points of the edge, improved
-# by this many Newton steps.
+# To find the point of an edge that is nearest to a corner, TRIED points of the edge are compared,
+# and STEPS steps of Newton's method improve the nearest one.
 TRIED, STEPS = 33, 4
 
 
@@ -159,7 +159,10 @@ class Topology:
 
     @cached_property
     def joints(self) -> Joints:
-        """The joints; InputError for a vertex inside an edge, or too many patches at an edge."""
+        """The joints; InputError if a vertex is inside an edge, or if patches do not fit together.
+
+        More than two patches at one edge do not fit together, nor do opposite orientations.
+        """
         pairs = self.pairs
         self._refuse_hanging_vertices()
         left, right = (_normals_along(self.normals, edges) for edges in pairs.T)
@@ -321,10 +324,10 @@ def _firsts(numbers: Indices) -> Iterator[tuple[int, int]]:
 
 
 def _touches(curve: Array, point: Array, size: float) -> bool:
-    """Return whether an inner point of a parabolic arc is within the distance `size` of `point`.
+    """Return whether the nearest point of a parabolic arc is closer to `point` than `size`.
 
-    The inner point is the point of the arc nearest to `point`. If an end of the arc is nearest, the
-    result is False. `curve` (3, 3) are the Bézier points of the arc.
+    If an end of the arc is nearest, the result is False. `curve` (3, 3) are the Bézier points of
+    the arc.
     """
     start, middle, end = curve - point
     a, b = start - 2.0 * middle + end, 2.0 * (middle - start)

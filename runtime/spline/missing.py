@@ -77,8 +77,8 @@ def checked_nodata(nodata: Any) -> float:  # noqa: ANN401
 def without_nodata(points: Array, nodata: object, name: str) -> Array:
     """Return points or elevations with NaN in place of `nodata`.
 
-    If `nodata` is None, or equals no value, which may be due to rounding, this warns of values that
-    look like missing data.
+    If `nodata` is None, or if no value equals it, possibly because of rounding, a warning names
+    values that look like missing data.
     """
     if nodata is None:
         _warn_of_nodata(points, name)
@@ -120,9 +120,9 @@ def _warn(text: str) -> None:
 def _suspicious_block(heights: Array) -> tuple[float, int] | None:
     """Return the value of a block of missing data in heights (m, n), and its size; or None.
 
-    The block is a connected area of the lowest or of the highest value. It reaches the boundary of
-    the grid, unless its value is 0. The size is its number of heights. Heights jump at the boundary
-    of the block, unlike at the shore of a lake or of the sea.
+    The block is a connected area of the lowest or of the highest value. It must reach the boundary
+    of the grid, unless its value is 0. The size is its number of heights. Heights jump at the
+    boundary of the block, unlike at the shore of a lake or of the sea.
     """
     known = ~np.isnan(heights)
     if not known.any():

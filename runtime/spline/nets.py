@@ -242,8 +242,9 @@ def from_nets(
     Raises
     ------
     InputError
-        For arrays of other shapes, NaN or infinity; if a corner of a patch is inside an edge of
-        another one, if more than two patches share an edge, or if two have opposite orientations.
+        For arrays of other shapes, NaN, infinity, or indices without a point; if `smooth` is not in
+        [0, 90); if a corner of a patch is inside an edge of another one, if more than two patches
+        share an edge, or if two have opposite orientations.
     SurfaceError
         If all points are the same.
 

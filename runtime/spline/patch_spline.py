@@ -62,12 +62,12 @@ class PatchSpline(Immutable, ABC):
         """Return p_u × p_v (k, 3) of patches (k,) at parameters u, v (k, 2)."""
 
     def _regular_places(self, patches: Indices, places: Array) -> tuple[Flags, Array, Array]:
-        """Return which points of patches are singular, regular points instead, and p_u × p_v there.
+        """Return a mask of singular points, parameters that are regular, and p_u × p_v there.
 
         Point i has the parameters places[i] in the patch patches[i]. It is singular if |p_u × p_v|
         is negligible relative to its value at the centre of the patch. The second array (k, 2) has
-        its parameters, moved slightly towards the centre; those of other points are kept. The third
-        array (k, 3) is p_u × p_v at these parameters.
+        the parameters of all points, those of singular points moved slightly towards the centre.
+        The third array (k, 3) is p_u × p_v at these parameters.
         """
         centre = np.full_like(places, 1.0 / 3.0)
         here, there = (self._cross_products(patches, x) for x in (places, centre))

@@ -21,10 +21,10 @@ from ..domain.domain import Boundary, BoundaryPair
 
 # The number of pairs a, b from which the plane closest to the ring is chosen.
 CANDIDATES = 4096
-# The length of a and b is the square root of BALANCE times the distance of neighbours in the ring,
-# in units of the rounding of coordinates. With longer vectors, the plane of a and b is closer to
-# the plane of the ring; with shorter vectors, points x a + y b are closer to the coefficients of
-# the ring.
+# The lengths of a and b are one to two times √(BALANCE d), where d is the distance of neighbours in
+# the ring, in units of the rounding of coordinates. With longer vectors, the plane of a and b is
+# closer to the plane of the ring; with shorter vectors, points x a + y b are closer to the
+# coefficients of the ring.
 BALANCE = 1.0 / 32.0
 
 
@@ -55,8 +55,8 @@ def close_pole(rows: Array, outside: int, first: int) -> None:
 def ring_around(ring: Array) -> tuple[Array, Array]:
     """Return a ring of coefficients (m, 3) moved into one plane, and the pole in its middle.
 
-    All coordinates are multiples of a small power of two, so that 2 p − ring is exact. If a ring
-    does not run around p once, due to rounding, it is not moved into a plane.
+    All coordinates are multiples of a small power of two, so that 2 p − ring is exact for the pole
+    p. A ring that does not run around p, due to rounding, is not moved into a plane.
     """
     grain = 4.0 * float(np.spacing(np.abs(ring).max()))
     ring = np.round(ring / grain)

@@ -251,8 +251,8 @@ def _open_rows(rows: Array, boundary: BoundaryPair, sides: tuple[Array, Array]) 
 def _close(result: Array, turned: Array, boundary: Boundary) -> None:
     """Write the rows of ghosts beyond poles, then beyond periodic or mirrored boundaries.
 
-    Whole rows are copied, first beyond the boundaries of v, then of u. So the copies include the
-    ghosts along the other parameter.
+    Whole rows are copied, first beyond the boundaries of v, then of u, so that the copies include
+    the ghosts along the other parameter.
     """
     directions = ((turned, boundary[1]), (result, boundary[0]))
     for rows, end in directions:

@@ -1,8 +1,8 @@
 """Tips of splines: edges of patches that are collapsed to a point, as at the apex of a cone.
 
 A quadratic patch with such an edge is developable: its normals depend only on one parameter, the
-distance from the tip. Such a patch has no samples: its normals form a curve, and other normals in
-its Gaussian image are rounding errors. Smooth poles, which have one normal, are no tips.
+distance from the tip. Such a patch has no samples: its Gaussian image is a curve, and normals next
+to this curve are rounding errors. Smooth poles, which have one normal, are not tips.
 """
 
 from typing import NamedTuple
@@ -59,7 +59,7 @@ def collapsed_sides(spline: Spline) -> list[tuple[int, int]]:
 
 
 def tips_of(spline: AnySpline) -> Tips | None:
-    """Return the tips of a spline, which are kept with it; None if there are none."""
+    """Return the tips of a spline, cached with the spline, or None if it has no tips."""
 
     def make() -> Tips | None:
         return _of_nets(spline) if isinstance(spline, NetSpline) else _of_grid(spline)
