@@ -9,8 +9,8 @@ from dataclasses import dataclass
 class Misfit:
     """The distance of a spline from the surface or the data that it approximates.
 
-    Points of both are compared at equal parameters. So `distance` is an upper bound of the distance
-    of the surfaces at these points, and a close one: tangential differences are small.
+    Points of both are compared at equal parameters, so that `distance` is an upper bound of the
+    distance of the surfaces at these points, and a close one: tangential differences are small.
 
     Attributes
     ----------
