@@ -209,7 +209,8 @@ def bounds_over_boxes(tape: Tape, centres: Array, half_widths: Array, order: int
     """Return bounds of the Taylor coefficients of x(u,v), up to an order, over boxes.
 
     Boxes are given by `centres` (k, 2) and `half_widths` (k, 2). The result (k, 2, 10, 3) has the
-    midpoint and the radius of each of 10 coefficients of x, y, z.
+    midpoint and the radius of each of 10 coefficients of x, y, z. With order 2, only the first six
+    are defined.
     """
     middles, radii = np.empty((2, BALL * (len(tape.operations) + 1)))
     bounds = np.empty((len(centres), 2, 10, 3))

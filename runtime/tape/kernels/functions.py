@@ -121,8 +121,8 @@ def ranges(code, low, high, f):
 
     Coefficients are monotone between their extrema, so that their values at extrema and at the ends
     of the interval bound them. Those of sinc are bounded by their values in the middle, and by
-    bounds of their slopes.
-    Radii are infinite if the function has a singularity in the interval, or if no bound is known.
+    bounds of their slopes. Radii are infinite if the function has a singularity in the interval, or
+    if no bound is known.
     """
     function = code - elementary.RECIPROCAL
     for k in range(4):

@@ -1,8 +1,8 @@
 """Bounds of the polynomials of a spline over boxes, for `balls` and `rounding`.
 
-On a box, a polynomial is expanded at the centre s, t. Over the box, a coefficient of the expansion
-changes by at most the sum of the absolute values of the coefficients of higher order. The same
-expansion of absolute values bounds rounding errors.
+A polynomial is expanded at the centre s, t of a box. Over the box, a coefficient of the expansion
+changes by at most its terms of higher order, with the absolute values of their coefficients, and
+half the widths of the box as variables. Expansions with absolute values also bound rounding errors.
 
 A box may contain knots. A derivative that is unbounded there has an infinite radius.
 """
@@ -96,7 +96,7 @@ def part_in(breaks, frames, period, turns, first, last, i, u, half_width):
 
 @loop
 def least_smooth(smooth, first, last):
-    """Return the number of derivatives that are continuous at all knots from `first` to `last`."""
+    """Return the number of derivatives that are continuous at all knots between two spans."""
     spans, least = len(smooth) - 1, 1000
     for i in range(first, last):
         least = min(least, smooth[(i + 1) % spans])
@@ -107,9 +107,10 @@ def least_smooth(smooth, first, last):
 def expand(spline, i, j, c, s, t, middles, radii, at):
     """Expand a polynomial at s, t.
 
-    From `at` on, `middles` receives the coefficients of the expansion, and those of the expansion
-    at |s|, |t| of the polynomial with the absolute values of the coefficients; `radii` receives
-    bounds of the errors of the expansion that result from the errors of the coefficients.
+    From `at` on, `middles` receives the coefficients of the expansion; from `at` + SECOND on, those
+    of the expansion at |s|, |t| of the polynomial with the absolute values of the coefficients.
+    `radii` receives bounds of the errors of the expansion that result from the errors of the
+    coefficients.
     """
     table, errors = spline.coefficients, spline.errors
     p, q = table.shape[2] - 1, table.shape[3] - 1
@@ -128,8 +129,8 @@ def expand(spline, i, j, c, s, t, middles, radii, at):
 def include_balls(spline, i, j, c, s, t, half_s, half_t, terms, middles, radii, at, scratch):
     """Extend the ranges of Taylor coefficients so that they hold the coefficients on spans i, j.
 
-    The least and the largest coefficients, by u and v, are in `middles` and `radii`, in the lane at
-    `at`.
+    The ranges are those of coefficients with respect to u and v: their lower ends are in `middles`,
+    their upper ends in `radii`, in the lane at `at`.
     """
     p, q = spline.coefficients.shape[2] - 1, spline.coefficients.shape[3] - 1
     along_u, along_v = spline.frames_u[i, 1], spline.frames_v[j, 1]
