@@ -1,6 +1,6 @@
 """The misfit of a spline: its distance from the surface, or from the data, that it approximates.
 
-A surface is compared at test points that are distinct from those of the fit, data at all points.
+A surface is compared at test points that the fit does not use, data at all points.
 """
 
 import math
@@ -22,7 +22,10 @@ POINTS_AT_A_TIME = 1 << 16
 
 
 class Counts(NamedTuple):
-    """The numbers of test points on a line, of lines inside the domain, and of scattered points."""
+    """The numbers of test points on a line, of inner lines along u (or v), and of scattered points.
+
+    Inner lines are those that are not near the sides of the domain.
+    """
 
     steps: int
     lines: int
@@ -32,8 +35,8 @@ class Counts(NamedTuple):
 # Test points are on lines along u and along v, and scattered over the domain. Each line has three
 # test points in any strip of 1 % of the domain that it crosses.
 MANY = Counts(steps=301, lines=4, spread=2048)
-# The counts for a spline with fewer cells than FEW_CELLS: the surface is evaluated at most twice as
-# often as for the fit, and at most 8,000 times.
+# The counts for a spline with fewer cells than FEW_CELLS: a surface is evaluated at most 8,000
+# times to compare it with one spline.
 FEW_CELLS, FEW = 2048, Counts(steps=202, lines=1, spread=512)
 # Further lines of test points run along the sides, at these distances relative to the domain: at
 # poles and open sides the spline is least accurate in the first cell.
@@ -79,8 +82,8 @@ class Comparison:
         The largest angle between normals, away from collapsed sides of the domain, such as poles:
         next to these sides angles decrease only slowly with the size of the cells.
     farthest, steepest : (2,) float64 array
-        The parameters, as fractions of the domain, of the largest distance, and of the largest
-        angle (of `angle_away` if that is known).
+        The parameters, as fractions of the domain, of the largest distance, and of `angle_away`
+        (if that is None, of the largest distance, too).
 
     """
 
@@ -243,8 +246,8 @@ class Probe:
 def probe_of(surface: Surface, cells: tuple[int, int]) -> Probe:
     """Return the values of a surface at test points, to compare splines with them.
 
-    The splines have at least the given numbers of cells. Raises SurfaceError if the surface cannot
-    be evaluated at a test point.
+    The numbers of `cells` of a spline decide how many test points there are. Raises SurfaceError if
+    the surface cannot be evaluated at one of them or, with a trim, is finite at fewer than two.
     """
     counts = FEW if cells[0] * cells[1] < FEW_CELLS else MANY
     parts = _places(counts)

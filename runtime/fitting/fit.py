@@ -268,7 +268,10 @@ def _warn(spline: Spline, misfit: Misfit, what: str) -> None:
 
 
 def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
-    """Return the quasi-interpolant of a surface that can be evaluated anywhere."""
+    """Return the quasi-interpolant of a surface, from values at the centres and vertices of cells.
+
+    Values that are missing outside of a trim are extrapolated.
+    """
 
     def evaluate(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
         return not_too_large(surface.evaluate(u, v), surface.name)

@@ -13,7 +13,7 @@ from ..spline.spline import Spline
 from .comparison import Comparison, Misfit
 
 # A spline is an improvement if at most this part of an error remains. Halving the cells leaves an
-# eighth of an error of order 3, and a half of an error of order 1, as at folds.
+# eighth of an error of order 3, and a half of an error of order 1, as at creases.
 IMPROVED = 0.75
 # Cells are halved along u only if the error varies more than this many times as much along u as
 # along v, along v only in the opposite case, and along both otherwise.
@@ -125,7 +125,7 @@ def refined(
         if stalled >= goal.patience and distance <= FAR_OFF:
             break
         # The variation may mislead: the error also varies along u if cells are too long along v.
-        # So after a step without improvement, the variation of the distance is used instead.
+        # After a step without improvement, the variation of the distance is therefore used.
         u, v = variation(spline, comparison, angle > distance and stalled == 0)
         finer = _finer(spline.cells, u, v, goal)
         if finer == spline.cells:
