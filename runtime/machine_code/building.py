@@ -35,7 +35,7 @@ from .sources import PACKAGE
 # Intel's vector library may exist on the machine that builds, but not on others.
 OPTIONS = {"NUMBA_CPU_FEATURES": "", "NUMBA_DISABLE_INTEL_SVML": "1"}
 # Numba numbers functions in the order in which a process compiles them, and machine code contains
-# these numbers. So each process compiles one share, and the shares do not depend on the number of
+# these numbers. Each process therefore has one share, and the shares do not depend on the number of
 # cores: the same sources, in the same folder, give the same bytes.
 SHARES = 3
 

@@ -37,7 +37,7 @@ SUFFIX = ".kernel"
 
 @cache
 def kept_folder() -> Path | None:
-    """Return the folder for machine code of these sources; None if none can be written.
+    """Return the folder for machine code of these sources, or None if no folder can be used.
 
     It is in NUMBA_CACHE_DIR if that is set, otherwise next to the sources, or else in the user's
     cache folder. A folder that others can write to is not used: its entries could run anything.
@@ -74,7 +74,7 @@ def _of_user() -> list[Path]:
 
 
 def load(folder: Path, key: str, processor: object) -> bytes | None:
-    """Return an entry compiled for a processor, possibly damaged; None if there is none."""
+    """Return an entry compiled for a processor, possibly damaged, or None."""
     with suppress(OSError):
         return private_content(_path(folder, key, processor))
     return None

@@ -1,7 +1,7 @@
 """The machine code of one kernel for one signature, as bytes: an entry.
 
-Unlike in Numba's own cache, an entry is no pickle, and has neither LLVM's bitcode nor the annotated
-source: machine code that is not linked into other functions needs neither. An entry consists of a
+Unlike in Numba's own cache, an entry is not a pickle, and has neither bitcode nor annotated source
+text: machine code that is not linked into other functions needs neither. An entry consists of a
 checksum, which detects damage, the size of a head, the head, and the object code. The head (JSON)
 has names and types. An entry is loaded without Numba's compiler. Files of entries are written
 atomically.
@@ -24,7 +24,7 @@ from .signatures import as_json, as_types
 
 CHECKSUM = 32  # bytes of SHA-256
 WORD = 8  # bytes of the size of a head
-BINARY = getattr(os, "O_BINARY", 0)  # of Windows
+BINARY = getattr(os, "O_BINARY", 0)  # exists on Windows only
 
 
 def key_of(function: Callable[..., Any], signature: Any) -> str:
@@ -36,7 +36,8 @@ def key_of(function: Callable[..., Any], signature: Any) -> str:
 def entry_of(compiled: CompileResult) -> bytes:
     """Return the entry of a kernel that was compiled.
 
-    Raises TypeError for types that no kernel of this package has, and for constants of Python.
+    Raises TypeError for types that no kernel of this package has, and for code that refers to
+    Python objects.
     """
     library, description, _, signature, *_, environments = compiled._reduce()
     name, _, (code, _) = library
@@ -74,7 +75,7 @@ def kernel_of(entry: bytes, context: Any) -> CompileResult | None:
     library.enable_object_caching()
     library._set_compiled_object(code)
     library._finalize_final_module()
-    # Numba takes the symbols of a module from its bitcode, which is not here.
+    # Numba takes the symbols of a module from its bitcode, which an entry does not have.
     symbols = (description.llvm_cpython_wrapper_name, description.llvm_func_name)
     codegen._engine._defined_symbols.update(symbols)
     environments = [_rebuild_env(module, [], name) for module, name in head["environments"]]

@@ -3,9 +3,10 @@
     python -m gaussmap.runtime.machine_code.listing [--write | --usual] [FOLDER]
 
 Kernels that the package's file lacks are compiled when they are called, and cached in FOLDER (by
-default the cache of this machine). So after a run of all tests, FOLDER contains the kernels that
-the list lacks. They are printed, and the exit code is 1 if there are any. With --write, the kernels
-in FOLDER become the list; with --usual, they become the list of kernels that usual calls need.
+default the cache of this machine), so that after a run of all tests, FOLDER contains the kernels
+that the list lacks. They are printed, and the exit code is 1 if there are any. With --write, the
+kernels in FOLDER become the list; with --usual, they become the list of kernels that usual calls
+need.
 """
 
 import sys

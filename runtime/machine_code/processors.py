@@ -63,7 +63,7 @@ def runs_here(level: Level) -> bool:
 
 
 def changed_options() -> dict[str, str]:
-    """Return the environment variables that are set and change the code of Numba."""
+    """Return the environment variables that are set and change the code that Numba generates."""
     names = (f"NUMBA_{name}" for name in CODE_OPTIONS)
     return {name: os.environ[name] for name in names if os.environ.get(name)}
 

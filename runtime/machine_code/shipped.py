@@ -25,7 +25,7 @@ from .trust import is_as_safe_as_sources
 
 config: Any = numba_config  # Numba creates its attributes at run time
 MAGIC = b"gaussmap kernels 2\n"
-SWITCH = "GAUSSMAP_KERNELS"  # set to 0, the file is neither built nor used
+SWITCH = "GAUSSMAP_KERNELS"  # if it is 0, the file is neither built nor used
 
 
 class Pack:
@@ -48,7 +48,7 @@ class Pack:
         self.digest: str = self.header["digest"]
 
     def get(self, key: str) -> bytes | None:
-        """Return an entry, possibly damaged; None if there is none."""
+        """Return the entry with a key, possibly damaged, or None."""
         if key not in self.places:
             return None
         offset, size = self.places[key]
@@ -62,7 +62,7 @@ def pack_path(folder: Path = PACKAGE) -> Path | None:
 
 
 def write_pack(path: Path, entries: Mapping[str, bytes], **header: object) -> None:
-    """Write a file of machine code; `entries` are entries by their keys."""
+    """Write a file of machine code; `entries` maps keys to entries."""
     places, offset = {}, 0
     for key, entry in entries.items():
         places[key] = (offset, len(entry))

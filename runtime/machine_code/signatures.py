@@ -23,7 +23,7 @@ Listing = Mapping[str, Sequence[Any]]
 
 
 def read() -> Listing:
-    """Return the signatures of all kernels, with types in the form that JSON has."""
+    """Return the signatures of all kernels, with types as in the file."""
     return json.loads(SIGNATURES.read_text(encoding="utf-8"))
 
 

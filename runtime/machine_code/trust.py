@@ -21,7 +21,7 @@ def is_as_safe_as_sources(path: Path) -> bool:
 
 
 def private_content(path: Path) -> bytes | None:
-    """Return the content of a file; None if others can write it. Raises OSError."""
+    """Return the content of a file; None if others can write it. OSError if it cannot be read."""
     place = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0))
     with open(place, "rb") as file:
         return file.read() if is_private(os.fstat(place)) else None
