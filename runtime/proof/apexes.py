@@ -1,10 +1,10 @@
 """Apexes: sides of the domain, and parameter lines inside it, that are collapsed to a point.
 
 On a line u = u₁ that is collapsed to a point, x_v = 0. For u on either side of the line, the mean
-value theorem says that n·x_v(u, v) = (u − u₁) n·x_uv(ξ, v) with some ξ between u₁ and u. So at a
-point near the line that has the normal n, n·x_u = 0, and n·x_uv = 0 at some ξ. If bounds over a box
-that touches the line exclude one of these zeros, or show that all normals are more than 90° from n,
-the box has no point with this normal.
+value theorem says that n·x_v(u, v) = (u − u₁) n·x_uv(ξ, v) with some ξ between u₁ and u. A point
+(u, v) beside the line that has the normal n therefore has n·x_u = 0, and n·x_uv(ξ, v) = 0. If
+bounds over a box that touches the line exclude one of these zeros, or show that all normals are
+more than 90° from n, the box has no point with this normal.
 """
 
 from dataclasses import dataclass
@@ -21,13 +21,14 @@ from .components import Undecided
 from .kernels.answers import OPEN_BOX
 from .kernels.cell_bounds import SMOOTH
 
-# A side of the domain counts as collapsed if PLACES points along it agree up to ROUNDINGS units in
-# the last place of the largest coordinate of all sides. The coordinates of the collapsed side alone
-# give no scale: near the origin they are small, but their rounding errors are not.
+# A line counts as collapsed if PLACES points along it agree up to ROUNDINGS units in the last place
+# of the largest coordinate, plus SAME_POINT times the extent, of all sides and lines. The
+# coordinates of the collapsed side alone give no scale: near the origin they are small, but their
+# rounding errors are not.
 PLACES, ROUNDINGS = 17, 64.0
 MIXED = 4  # the index of the Taylor coefficient of u v; those of u and v are 1 and 2
 BOXES_AT_A_TIME = 1 << 12  # 2 MB of bounds, or 64 MB if all boxes are cut
-# A box beside a line that is longer than 1/ALONG of the line is cut into ALONG parts, since the
+# A box beside a line is cut into ALONG parts if it is longer than 1/ALONG of the line, since the
 # derivatives may turn by 360° along the line.
 ALONG = 32
 # Collapsed lines inside the domain are searched between LINES equidistant lines. The first of these
@@ -65,13 +66,13 @@ class Apex:
     def at_pole(self, open_: Undecided, normals: Array) -> tuple[Undecided, Array, Indices]:
         """Return the remaining undecided boxes, and solutions at a collapsed side with one normal.
 
-        Such a side is where a surface goes only part of the way around a smooth pole. The results
-        are the remaining boxes, rows (k, 6) of `ProvedPlaces.places`, and the indices (k,) of their
-        normals. A box beside the side can be decided if the normals at its far side are different
-        from the normal of the side, and K has one sign there. The box then contains the point of
-        the side if the normal of the box (the prescribed one) is that of the side. It contains no
-        point if its normal differs from that of the side more than twice as much as the normals at
-        the far side do. Otherwise the box remains undecided.
+        Such a side occurs where a surface goes only part of the way around a smooth pole. The
+        results are the remaining boxes, rows (k, 6) as in `ProvedPlaces.places`, and the indices
+        (k,) of their normals. A box beside the side can be decided if the normals at its far side
+        are different from the normal of the side, and K has one sign there. The box then contains
+        the point of the side if the prescribed normal is that of the side. It contains no point if
+        the prescribed normal differs from that of the side more than twice as much as the normals
+        at the far side do. Otherwise the box remains undecided.
         """
         sides = open_.boxes.reshape(-1, 2, 2)
         away = np.abs(sides[:, self.axis] - self.end)
@@ -79,7 +80,7 @@ class Apex:
         near = (away.min(axis=1) <= BESIDE * size) & (away.max(axis=1) <= SMALL * size)
         kinds = open_.kinds.copy()
         if self.normal is None:
-            kinds[near] = OPEN_BOX  # gradients are small everywhere: they are no sign of a curve
+            kinds[near] = OPEN_BOX  # gradients are small everywhere here, not only on curves
             return open_._replace(kinds=kinds), np.empty((0, 6)), np.empty(0, np.int64)
         apart = np.linalg.norm(normals[open_.numbers] - self.normal, axis=1)
         rows, found, keep = list[Array](), dict[int, float](), np.ones(len(near), np.bool_)
@@ -147,7 +148,8 @@ class Apex:
     def _may_have_points(self, boxes: Array, normals: Array, sharply: bool = False) -> Flags:
         """Return whether boxes (k, 4) that touch the line may have points with normals (k, 3).
 
-        With `sharply`, boxes at a side whose normals are all opposite are excluded, too.
+        With `sharply`, boxes at a side are also excluded if all their normals are more than 90°
+        from the given one.
         """
         sides = boxes.reshape(-1, 2, 2)
         half = (sides[:, :, 1] - sides[:, :, 0]) / 2.0

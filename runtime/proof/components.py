@@ -1,4 +1,4 @@
-"""Components of the set of points with one normal, other than regular points: a box for each.
+"""Components, other than regular points, of the set of points with a given normal: a box for each.
 
 Boxes that bisection leaves undecided are joined where they touch. If the index of a box is not 0,
 the box contains a point. The index is the winding number of the gradient of the height n·x along a

@@ -88,7 +88,7 @@ class Bounds(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Pole:
-    """A pole: tapes of the coordinates q1, q2 and h by u and r, and the interval `around` of u.
+    """A pole: tapes of q1, q2 and h as functions of u and r, and the interval `around` of u.
 
     The columns of `basis` are the derivatives of x by q1, q2 and h. `tilt` is the larger of two
     errors, which are 0 for a smooth surface: the derivative of h at the pole, and the jump of

@@ -3,7 +3,8 @@
 If the coordinates of a surface are a tape (`runtime.tape.kernels.points`), its derivatives have
 bounds over boxes of parameters. An index cuts the domain into cells, each with a cone that contains
 its normals. For a given normal, either bounds exclude a cell, or a contraction proves that it has
-exactly one point, or the cell is cut. Small boxes that remain undecided are listed.
+one point or none, or the cell is cut. Small boxes that remain undecided are listed. A solution is a
+point with the given normal.
 """
 
 from __future__ import annotations
@@ -67,7 +68,7 @@ MOST_OPEN = 0.25
 # The domain of a mirrored parameter is extended beyond its upper end, by this share of its length.
 # A point in this strip is found twice: in the strip and at the lower end. In the first half of the
 # strip, the solution in the strip is kept, otherwise the one at the lower end. The strip is far
-# wider than rounding errors, so that exactly one of both is kept.
+# wider than rounding errors, so that exactly one of the two is kept.
 BEYOND = 2.0**-30
 NO_PAIRS = np.empty((0, 2), np.int64)
 
@@ -113,7 +114,7 @@ class ProvedPlaces(NamedTuple):
 
 
 class Places(NamedTuple):
-    """Solutions in no order: rows (k, 6) of `ProvedPlaces.places`, and indices of their normals."""
+    """Unsorted solutions: rows (k, 6) as in `ProvedPlaces.places`, and the indices of normals."""
 
     rows: NDArray[np.float64]
     numbers: NDArray[np.int64]
@@ -137,8 +138,9 @@ class ProvedIndex:
 
     `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v, 0 if there is none. A parameter
     with a mirrored seam, whose axis is in `seams`, has no period here, since the oriented normal
-    is reversed across the seam; its upper end is moved outwards by BEYOND times its length. In the
-    boxes `unbounded` (m, 4), derivatives have no bounds, and no point is known or excluded.
+    is reversed across the seam. The upper end of its interval is moved outwards by BEYOND times the
+    length. In the boxes `unbounded` (m, 4), derivatives have no bounds, and no point is known or
+    excluded.
     """
 
     tape: Tape
@@ -181,7 +183,8 @@ class ProvedIndex:
         Returns
         -------
         ProvedIndex or None
-            The index; None if more than a share MOST_OPEN of the cells has no cone of normals.
+            The index; None if the surface has no normals, or if the cells without a cone of normals
+            cover more than the share MOST_OPEN of the domain.
 
         """
         seams = tuple(k for k in (0, 1) if boundary[k][0] == "mirrored")

@@ -58,7 +58,7 @@ def polar_tapes(tape: Tape, angle: int, end: float, inward: float) -> PolarTapes
 def _with_slopes(
     writer: TapeWriter, tape: Tape, variables: list[Traced], slopes: list[Slope]
 ) -> list[tuple[Traced, Slope]]:
-    """Return the value of each row of a tape and its derivative by the angle; 0.0 for constants."""
+    """Return the value of each row of a tape, and its derivative with respect to the angle."""
     rows: list[tuple[Traced, Slope]] = []
     for (code, a, b, _), (number, distance) in zip(
         tape.operations.tolist(), tape.numbers.tolist(), strict=True

@@ -1,4 +1,4 @@
-"""The poles of a surface: each has a disc or a cap, or is left open.
+"""The poles of a surface: each has a disc or a cap, or nothing is known of it.
 
 In a disc the surface is a graph over its tangent plane (`discs.py`). A cap is a strip of parameters
 around a pole without a disc; only its normals have bounds. At a pole r = 0 the derivative x_u
@@ -31,8 +31,8 @@ PLACES, SMOOTH = 16, 1e-9
 class Cap(NamedTuple):
     """A box u₀, u₁, v₀, v₁ of parameters around a pole, its size, and a cone with all its normals.
 
-    A cap in a plane is a region whose points all have one normal: its `kind` is CURVE. Other caps
-    are undecided boxes for the normals in their cone.
+    A cap in a plane is a region with a constant normal: its `kind` is CURVE. Other caps are
+    undecided boxes for the normals in their cone.
     """
 
     box: Array

@@ -1,9 +1,8 @@
 """Cells of the parameters of a surface, with proved bounds of its derivatives.
 
 Each cell has parameters s and t in [−1, 1]: u = u₀ + h_u s, v = v₀ + h_v t. Derivatives are taken
-with respect to s and t. So all derivatives of a cell have the same unit, and so have the
-derivatives of the height n·x for a unit normal n. `symbolic/proved.py` says what the bounds are
-for.
+with respect to s and t, so that all derivatives in a cell have the same unit, as have those of the
+height n·x for a unit normal n. `symbolic/proved.py` derives the bounds.
 """
 
 from __future__ import annotations
@@ -403,7 +402,7 @@ def left_of(cells, j, column):
 
 @loop
 def side_of(patch, rest_s, rest_t, n):
-    """Return the sign that the scalar products of n with all normals of a cell have, or else 0."""
+    """Return the common sign of the products of n and all normals of a cell; 0 if it is unknown."""
     ordinates = normal_ordinates(patch)
     error = normal_error(patch, rest_s, rest_t)
     least, most = math.inf, -math.inf
@@ -463,7 +462,7 @@ def write_one_cone(cells):
 
 @loop
 def is_done(cells, j):
-    """Return whether a cell has at most one solution for each of its normals, or is flat."""
+    """Return whether a cell counts as regular (see REGULAR), or is flat."""
     if cells.noise[j, REACH] == 0.0 or cells.cone[j, 3] >= WIDE:
         return False
     patch = patch_of(cells.hot, j)

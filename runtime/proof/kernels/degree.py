@@ -2,7 +2,7 @@
 
 A joint is a line u = const or v = const where second derivatives of the surface may jump, and first
 ones, too, as long as the tangent plane does not. Joints cut the box into parts. Where the surface
-is a graph over the tangent plane, minus the gradient of the height is
+is a graph over a plane perpendicular to n, minus the gradient of the height n·x is
 
     G = (Y1 F2 − F1 Y2, F1 X2 − X1 F2) / (X1 Y2 − X2 Y1),    F = (n·x_u, n·x_v),
 
@@ -65,7 +65,7 @@ from .pairs import (
     newton,
 )
 
-# What is known of a box: nothing, or whether it contains one point with the normal or none.
+# A box is decided if it is known to contain exactly one point with the normal, or none.
 UNDECIDED, DECIDED = range(2)
 # Boxes grow on each side by the part GROWN of their width, since no point of their border may have
 # the normal, and at least by the part LEAST of the domain, since near a joint normals are known
@@ -279,7 +279,7 @@ def turns_less_than_half(tile, k, n, e1, e2, side, x, step):
 
 @loop
 def walk_side(tile, k, n, e1, e2, side, path):
-    """Follow the gradient along a side of part k; return whether it is known to have no zero there.
+    """Follow the gradient along a side of part k; return False if it may have a zero there.
 
     `path` (6,) has the angle by which the gradient has turned so far, the last gradient, the first
     gradient, and 1 if there was a first gradient, else 0.
@@ -405,7 +405,7 @@ def index_around(tape, work, tile, joints, domain, points, hull, n, ends, path, 
 
 @inline
 def is_free(side, in_u, in_v):
-    """Return whether a side of a box belongs to its border: it is no seam and not collapsed."""
+    """Return whether a side of a box belongs to its border: it is neither a seam nor collapsed."""
     kind = in_v if side % 2 == 0 else in_u
     # Side 0 is at the least v, side 3 at the least u.
     return kind != SEAM and kind != (BEFORE if side % 3 == 0 else AFTER)

@@ -1,4 +1,4 @@
-"""Folds: small boxes with a singular Hessian, in which a normal has no solution or two."""
+"""Folds: small boxes with a singular Hessian, in which no point or two have a given normal."""
 
 from __future__ import annotations
 
@@ -24,8 +24,9 @@ from .cell_bounds import (
 from .pairs import forms_at
 
 NO_PLACE, DOUBLE, UNKNOWN = range(3)
-# The rotated coordinates p and w are between −ALONG and ALONG, and between −ACROSS and ACROSS. So
-# bounds are needed for |s|, |t| ≤ √(2² + 2) < WIDER.
+# Coordinates along the eigenvector of the Hessian with the larger eigenvalue, and across it, are
+# between −ALONG and ALONG, and between −ACROSS and ACROSS, so that bounds are needed for |s|, |t| ≤
+# √(2² + 2) < WIDER.
 ALONG, ACROSS, WIDER = 2.0, 1.4143, 2.5
 # The largest number of steps towards the extremum, and the length below which a step is the last.
 STEPS, SMALL = 30, 1e-10
@@ -33,10 +34,10 @@ STEPS, SMALL = 30, 1e-10
 
 @loop
 def at_fold(tape, work, tile, n):
-    """Classify the first cell of a tile: no solution for the normal n, a double one, or unknown.
+    """Classify the first cell of a tile: no point with the normal n, a double point, or unknown.
 
-    For a double one, the cell is replaced by a box that contains all of its solutions for n: none,
-    or two that are close to each other.
+    For a double point, the cell is replaced by a box that contains all points of the cell with the
+    normal n: none, or two that are close to each other.
     """
     write_cells(tape, work, WIDER, tile, 1)
     if tile.noise[0, REACH] < WIDER:

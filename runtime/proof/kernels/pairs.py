@@ -1,8 +1,9 @@
 """Pairs of a cell and a normal: exclusion by bounds, and the unique solutions of other pairs.
 
-Pairs are processed in tiles of LANES: each step is a vectorized loop over the lanes. Pairs that
-need another evaluation of the surface stay in the tile; new pairs replace those that are done.
-Pairs that are not decided after a few evaluations are left to `places`.
+A solution is a point of the cell with this normal. Pairs are processed in tiles of LANES: each step
+is a vectorized loop over the lanes. Pairs that need another evaluation of the surface stay in the
+tile; new pairs replace those that are decided. Pairs that are not decided after a few evaluations
+are left to `places`.
 """
 
 from __future__ import annotations
@@ -320,7 +321,7 @@ def form(registers, x, y, z, n, at):
 
 @inline
 def distance(p, q, y11, y12, y22, whole, base):
-    """Return a bound of the distance from a point to the unique solution, if that is near.
+    """Return a bound of the distance from a point to the solution, if bounds hold that far.
 
     At the point, the derivatives of n·x by s and t are p and q; at the solution both are 0.
     """

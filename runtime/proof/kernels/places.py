@@ -1,6 +1,7 @@
-"""All solutions for a normal in cells that the simple search left open: bisection, folds, doubles.
+"""All points with a given normal in cells that `pairs` left undecided: bisection, folds, degrees.
 
-The cells of a normal are bisected level by level. Small boxes that remain undecided are listed.
+Such points are called solutions. The cells are bisected level by level. Small boxes that remain
+undecided are listed.
 """
 
 from __future__ import annotations
@@ -68,17 +69,18 @@ from .pairs import (
 
 # The number of levels of bisection, and the levels after which clusters are tested.
 DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19, 24)
-# Boxes on curves of solutions are set aside if more than MOST cells are undecided, or more than
-# MANY boxes, between GROWTH and AREA times as many as on the level before: along a curve, their
-# number doubles. Bisection ends if there are more than BOXES other boxes; if from the level FINE on
-# there are more than AREA times as many as before, which rounding leaves open; or if few of them
-# are set aside again: less than FEW times the others.
+# Boxes on curves of solutions are set aside in two cases: more than MOST cells are undecided at
+# first; or there are more than MANY boxes, and between GROWTH and AREA times as many as on the
+# level before (along a curve, their number doubles). Bisection ends in three cases: there are more
+# than BOXES other boxes; from the level FINE on, there are more than AREA times as many boxes as on
+# the level before, since rounding leaves them undecided; boxes are set aside again, but fewer than
+# FEW times the others.
 MANY, GROWTH, AREA, MOST, BOXES, FINE, FEW = 256, 1.6, 3.0, 1024, 12288, 10, 2.0**-6
 # The columns of boxes: u, v, the index of a cell, half the widths relative to those of the cell.
 BOX_COLUMNS = 5
 # A box is cut into two if one side is more than SLENDER times as long as the other, relative to the
-# sides of its cell.
-# Contraction leaves at least the part SHRUNK of a side, so that clusters have a width.
+# sides of its cell. Contraction leaves at least the part SHRUNK of a side, so that clusters have a
+# width.
 SLENDER, SHRUNK = 4.0, 2.0**-5
 # A box is on a curve of solutions if at most SETTLING steps lead from its centre to a solution
 # within BESIDE half widths. A Hessian counts as one of rank 1 if its determinant is less than RANK
@@ -231,7 +233,7 @@ def store_places(t, lanes, work, boxes, number, answers):
         reach_u, reach_v = t[i + REACHED] * t[i + HU], t[i + REACHED] * t[i + HV]
         row[5], row[6] = t[i + U0] - reach_u, t[i + U0] + reach_u
         row[7], row[8] = t[i + V0] - reach_v, t[i + V0] + reach_v
-        row[BORDER] = float(boxes.numbers[k])  # until it is decided
+        row[BORDER] = float(boxes.numbers[k])  # the cell, until `is_inside` writes this column
         answers.numbers[at] = number
         answers.counts[0] = at + 1
     return True
@@ -335,7 +337,7 @@ def list_rest(tape, work, index, boxes, count, on_curve, domain, number, n, answ
 
 @inline
 def middle_of(boxes, on_curve, left, owner):
-    """Return the middle box of a cluster, −1 if one of them is on no curve."""
+    """Return the index of the middle box of a cluster; −1 if one of its boxes is on no curve."""
     own = 0
     for k in range(on_curve + left):
         if boxes.owner[k] == owner:
@@ -356,7 +358,8 @@ def settle(tape, work, boxes, cells, rows, lanes, n):
     """Move from the centres of boxes towards solutions by Gauss–Newton steps; write u, v to `work`.
 
     The boxes are the first rows, as many as there are lanes. The state of a lane becomes ONE if the
-    steps reach a point near the box whose residual is explained by rounding, else NONE.
+    steps reach a point near the box whose residual is explained by rounding, unless it is a regular
+    solution with a small error (see SURE). Otherwise the state becomes NONE.
     """
     t, outputs = boxes.pairs, tape.outputs
     x, y, z = (
@@ -391,9 +394,10 @@ def settle(tape, work, boxes, cells, rows, lanes, n):
 
 @loop
 def settled(forms, noise, size_s, size_t, s, t):
-    """Return s, t after a Gauss–Newton step, or the same s, t with the state ONE if they settled.
+    """Return s, t after a Gauss–Newton step, and a state: MORE, or NONE if they are far away.
 
-    `forms` are those at s, t in a box with the half widths size_s, size_t.
+    If rounding explains the residual at s, t, they are returned unchanged, with the state of
+    `settle`. `forms` are those at s, t in a box with the half widths size_s, size_t.
     """
     a, b, c, p, q = forms
     rest_s, rest_t = noise[FIRST_S] + noise[TOLERANCE_S], noise[FIRST_T] + noise[TOLERANCE_T]

@@ -1,7 +1,4 @@
-"""Compute the fields of samples with the tape of the surface, at the solutions of a search.
-
-Each solution has a known normal.
-"""
+"""The fields of samples at the solutions of a search, whose normals are known, from a tape."""
 
 from __future__ import annotations
 
