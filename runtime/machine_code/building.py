@@ -136,9 +136,9 @@ def _module_of(name: str) -> str:
 
 
 def _compiled(listing: Mapping[str, Any]) -> dict[str, bytes]:
-    """Compile each kernel for each of its signatures; return the entries of the file, by key.
+    """Compile each kernel for each of its signatures, and return the entries by key.
 
-    This runs in a process of its own.
+    Each share of kernels is compiled in a process of its own.
     """
     gc.disable()  # Numba also numbers types, and renumbers those that were garbage-collected.
     entries: dict[str, bytes] = {}

@@ -20,7 +20,7 @@ __all__ = ["inline", "jit", "long_vectors", "loop"]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 config: Any = numba_config  # Numba creates its attributes at run time
-# Compiled functions are called from Python or from one another, never from C; they count no
+# Compiled functions are called from Python or from one another, never from C, and do not count
 # references.
 OPTIONS: dict[str, Any] = {
     "nogil": True, "error_model": "numpy", "fastmath": False, "no_cfunc_wrapper": True,

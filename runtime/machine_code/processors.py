@@ -1,4 +1,4 @@
-"""Versions, platform and processor: what machine code depends on besides its sources."""
+"""Versions, platform and processor, on which machine code depends besides its sources."""
 
 import os
 import sys

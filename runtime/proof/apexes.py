@@ -189,7 +189,7 @@ def _cut(boxes: Array, axis: int) -> Array:
 def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:
     """Return the collapsed sides of a domain, and the collapsed lines inside the domain.
 
-    They are collapsed up to rounding. `periods` (2,) are those of u and v, or 0.
+    They are collapsed up to rounding. `periods` (2,) are the periods of u and v, or 0.
     """
     lines = [(axis, end) for axis in (0, 1) for end in domain[axis]]
     sides = len(lines)

@@ -60,7 +60,7 @@ def boxes_of(answers: Sequence[Answers]) -> Undecided:
 
 
 def components_of(open_: Undecided, domain: Array) -> Undecided:
-    """Return the boxes, after joining those of one normal that touch.
+    """Return the boxes, after joining touching boxes of the same normal.
 
     `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v or 0.
     """
@@ -79,7 +79,7 @@ def components_of(open_: Undecided, domain: Array) -> Undecided:
 
 
 def _join(open_: Undecided, keep: NDArray[np.bool_], domain: Array) -> None:
-    """Join the boxes of one normal that touch, in place: each component becomes its first box.
+    """Join touching boxes of one normal, in place: each component becomes its first box.
 
     `keep` is set to False for the other boxes.
     """

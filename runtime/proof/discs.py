@@ -47,8 +47,8 @@ CHANGE = 0.4
 BEYOND = 1.25
 # Creases are searched at these fractions of the radius.
 PARTS = (0.25, 0.5, 1.0)
-# Smaller angles count as 0: those between tangents and the tangent plane, and those between the
-# normals on both sides of a line.
+# Smaller angles count as 0: angles between tangents and the tangent plane, and between the normals
+# on both sides of a line.
 SMOOTH = 1e-9
 # Taylor coefficients: U1R2 is that of u r², …
 ONE, U1, R1, U2, U1R1, R2, _, U2R1, U1R2, _ = range(10)

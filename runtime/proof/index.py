@@ -173,7 +173,7 @@ class ProvedIndex:
         domain : ((u0, u1), (v0, v1)) of float
             The rectangle of the parameters.
         boundary : pair of pairs of str
-            The boundary conditions of u and of v, as those of `Surface`.
+            The boundary conditions of u and of v, see `Surface`.
         cells : (int, int), default (64, 64)
             The numbers of cells along u and v before cuts; they only influence which normals are
             undecided.
@@ -254,7 +254,7 @@ class ProvedIndex:
         return ProvedPlaces(*places, open_)
 
     def _once_at_seams(self, places: Sorted) -> Sorted:
-        """Return the solutions, those at mirrored seams only once.
+        """Return the solutions, with each point at a mirrored seam only once.
 
         A point at the lower end of a mirrored parameter is also in the strip beyond the upper end,
         with the opposite normal. Solutions in the first half of the strip are moved to the upper

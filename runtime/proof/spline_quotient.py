@@ -93,8 +93,8 @@ def _expanded(
 ) -> tuple[Array, Array]:
     """Return the coefficients of the powers of inward · (s − place), with bounds of their errors.
 
-    `table` and `errors` are those of the powers of s, along the last axis but one. The error of
-    `place` is at most `off`.
+    `table` has the coefficients of the powers of s along the last axis but one, `errors` bounds of
+    their errors. The error of `place` is at most `off`.
     """
     degree = table.shape[2] - 1
     shift, sizes, slopes = np.zeros((3, degree + 1, degree + 1))

@@ -1,12 +1,13 @@
 """Exact decisions whether a patch of a spline of nets has a normal, and the fields of its samples.
 
 The signs of the forms U, V, W at a normal decide whether a patch has it (paper, Sect. 3.2). If
-rounding leaves the sign of a form open, it is replaced by the sign for the boundary cone of the
-joint at this edge: one quadratic form for both patches of the joint, evaluated on integers. The
-boundary cones of all edges at a vertex contain the normal of this vertex, exactly. Ties are broken
-by an infinitesimal displacement of the normal, the same for all patches. Thus the Gaussian images
-of the patches have neither gaps nor overlaps. At a pole the images are wedges. The image of a patch
-with a collapsed edge is a curve, and such a patch has no hits.
+rounding leaves the sign of a form open, it is replaced by the sign of another quadratic form, which
+is the same for both patches at this edge, up to its sign, and is evaluated on integers. It vanishes
+on the boundary cone of the edge. The boundary cones of all edges at a vertex contain the normal of
+this vertex, exactly. Ties are broken by an infinitesimal displacement of the normal, the same for
+all patches. Thus the Gaussian images of the patches have neither gaps nor overlaps. At a pole the
+images are wedges. The image of a patch with a collapsed edge is a curve, and such a patch has no
+hits.
 """
 
 from collections.abc import Sequence

@@ -194,7 +194,8 @@ def nodes_of(spline: AnySpline, patches: Indices) -> tuple[Indices, Flags]:
 def _connected(lines: Lines, nodes: Indices) -> Indices:
     """Return the number of the connected set of each line.
 
-    Lines of one normal are connected if they are in one patch, or touch the same corner or edge.
+    Lines of one normal are connected if they are in the same patch, or touch the same corner or
+    edge.
     `nodes` (k, 6) are the numbers of the corners and edges of their patches, from `nodes_of`.
     """
     row, place = np.nonzero(lines.touched)

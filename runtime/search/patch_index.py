@@ -166,7 +166,7 @@ def _frame_of(cones: Array) -> tuple[Array, float]:
     if not (height - chords > 0.5).all():
         return everything
     # A bound of the tangent of the largest angle between a direction of a cone and the mean axis:
-    # the tangent for the axis of the cone, plus a bound of what its half angle adds.
+    # the tangent for the axis of the cone, plus a bound of the increase by its half angle.
     far = (np.hypot(x, y) / height + chords / (height * (height - chords))).max()
     tangent = max(float(far) * (1.0 + 1e-9), NARROWEST_CAP)
     if tangent > WIDEST_CAP:

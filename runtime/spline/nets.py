@@ -236,8 +236,7 @@ def from_nets(
     Returns
     -------
     NetSpline
-        The spline. Functions that take a `Spline` take it, except those that need a grid of
-        cells.
+        The spline. Functions that take a `Spline` take it, too, unless they need a grid of cells.
 
     Raises
     ------

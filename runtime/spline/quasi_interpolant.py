@@ -146,8 +146,8 @@ def continued(points: Array) -> Array:
 
     Take the line from a missing point to the nearest known point. The missing point gets the value
     of the quadratic through the nearest known point and the two points that follow on this line, in
-    steps of the same length, if these are in the grid. Missing points that are more than FAR rows
-    or columns from the nearest known point become NaN.
+    steps of the same length. It becomes NaN if these are not in the grid, or if it is more than FAR
+    rows or columns from the nearest known point.
     """
     bad: Flags = np.any(~np.isfinite(points), axis=2)
     places, nearest = np.argwhere(bad), _nearest(bad).T

@@ -127,7 +127,7 @@ def flush(tape, work, cells, tiles, first, count, found):
 
 @loop
 def store_hard(t, count, tiles, found):
-    """Store the undecided pairs of a tile as hard ones."""
+    """Store pairs of a tile that are undecided, or have a solution near a side, as hard pairs."""
     at = found.counts[1]
     for k in range(count):
         if t[np.uint64(k) + STATE] >= HARD:

@@ -135,7 +135,7 @@ def wide_normal(n, unit):
 
 @loop
 def note(D, U, V, W, forms, signs):
-    """Set those signs that are still 0 to the signs of the coefficients U, V, W of one monomial.
+    """Set each sign that is still 0 to the sign of the coefficient U, V or W of one monomial.
 
     If forms[0] is still 0, write the coefficients D, U, V to `forms`. Return whether all signs are
     different from 0.

@@ -46,7 +46,7 @@ class Lists(NamedTuple):
 
 @inline
 def cube_face(n):
-    """Return the face of the cube that a ray n meets, and its coordinates there (in −1 … 1).
+    """Return the face of the cube that a ray n meets, and the coordinates there (in −1 … 1).
 
     The faces are +x, −x, +y, −y, +z, −z.
     """

@@ -21,10 +21,10 @@ class Net(NamedTuple):
     """A NURBS surface, as arrays for kernels.
 
     `points` are (m, n, 3), or (m, n, 4) with w x, w y, w z, w; x, y, z are relative to `centre`
-    (3,). `degrees` (2,) are those of u and v. `spans` (2, 2) has a row for u and a row for v: the
-    indices of the first and the last knot span in use; the polynomials of these two are continued
-    beyond them. `periods` (2, 2) likewise: the lower end and the length of the period; the length
-    is 0 if there is no period.
+    (3,). `degrees` (2,) has the degrees for u and for v. `spans` (2, 2) has a row for u and a row
+    for v: the indices of the first and the last knot span in use; the polynomials of these two are
+    continued beyond them. `periods` (2, 2) likewise: the lower end and the length of the period;
+    the length is 0 if there is no period.
     """
 
     degrees: NDArray[np.int64]
@@ -40,7 +40,7 @@ class Scratch(NamedTuple):
     """Memory for one call.
 
     `basis_u` and `basis_v` (3, degree + 1) have rows for the basis functions and their first and
-    second derivatives; `sums` (6, 4) are those of `sum_derivatives`.
+    second derivatives; `sums` (6, 4) has the results of `sum_derivatives`.
     """
 
     basis_u: NDArray[np.float64]

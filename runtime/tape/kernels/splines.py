@@ -25,7 +25,7 @@ class Polynomials(NamedTuple):
     continuous derivatives at these ends, and `frames` (k, 2) the middle m and the factor f of each
     span: s = (u − m) f, t likewise. `periods` (2, 2) has a row for u and a row for v: the lower end
     and the length of the period; the length is 0 if there is no period. `coefficients`
-    (k, l, p + 1, q + 1, 4) are those of powers of s and t; `errors` are bounds of their errors.
+    (k, l, p + 1, q + 1, 4) belong to powers of s and t; `errors` are bounds of their errors.
     """
 
     breaks_u: NDArray[np.float64]
