@@ -195,8 +195,7 @@ def _connected(lines: Lines, nodes: Indices) -> Indices:
     """Return the number of the connected set of each line.
 
     Lines of one normal are connected if they are in the same patch, or touch the same corner or
-    edge.
-    `nodes` (k, 6) are the numbers of the corners and edges of their patches, from `nodes_of`.
+    edge. `nodes` (k, 6) are the numbers of the corners and edges of their patches, see `nodes_of`.
     """
     row, place = np.nonzero(lines.touched)
     shared = lines.keys[row] >> 32 << 32 | nodes[row, place]

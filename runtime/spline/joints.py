@@ -324,7 +324,7 @@ def _firsts(numbers: Indices) -> Iterator[tuple[int, int]]:
 
 
 def _touches(curve: Array, point: Array, size: float) -> bool:
-    """Return whether the nearest point of a parabolic arc is closer to `point` than `size`.
+    """Return whether the point of a parabolic arc nearest to `point` is within `size` of it.
 
     If an end of the arc is nearest, the result is False. `curve` (3, 3) are the Bézier points of
     the arc.

@@ -1,8 +1,8 @@
 """Tips of splines: edges of patches that are collapsed to a point, as at the apex of a cone.
 
 A quadratic patch with such an edge is developable: its normals depend only on one parameter, the
-distance from the tip. Such a patch has no samples: its Gaussian image is a curve, and normals next
-to this curve are rounding errors. Smooth poles, which have one normal, are not tips.
+distance from the tip. Such a patch has no samples: its Gaussian image is a curve, and rounding
+errors decide which other normals it has. Smooth poles, which have one normal, are not tips.
 """
 
 from typing import NamedTuple
