@@ -51,7 +51,7 @@ class Part(JITCodeLibrary):
         """Do nothing: kernels set the variable with the given name, for all of their parts."""
 
     def finalize(self) -> None:
-        """Optimise this function alone."""
+        """Optimise this function, together with small parts that it may inline."""
         self._raise_if_finalized()
         for library in dict.fromkeys(self._linking_libraries):
             self._reload_init.update(library._reload_init)

@@ -22,7 +22,8 @@ class CellMeasure:
     K of a cell is the sum of the signed solid angles of its patches divided by its area: the spline
     of a developable surface has elliptic and hyperbolic patches, whose solid angles cancel. This
     quotient also vanishes where K changes its sign; therefore `curvatures` are maxima over each
-    cell and its neighbours. The `solid_angles` of cells are sums of absolute values.
+    cell and its neighbours. The `solid_angles` of cells are sums of absolute values. In a spline of
+    nets each patch counts as a cell, without neighbours.
     """
 
     areas: Array

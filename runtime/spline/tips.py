@@ -24,8 +24,9 @@ SAME_POINT = 1e-9
 class Tips(NamedTuple):
     """The tips of a spline, at `points` (T, 3), and the patches at tips as flags (patches,).
 
-    A `collapsed` patch has an edge that is collapsed to a tip; a `touching` patch has a corner at a
-    tip. Points within the distance `same` of a tip count as the tip.
+    A `collapsed` patch has an edge that is collapsed to a tip. A `touching` patch has a corner at a
+    tip or, on a grid, is in a cell beside a tip. Points within the distance `same` of a tip count
+    as the tip.
     """
 
     points: Array

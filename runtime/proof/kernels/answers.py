@@ -27,9 +27,7 @@ class Answers(NamedTuple):
     """Arrays for solutions (k, 10), other boxes (k, 7) with their kinds, and indices of normals.
 
     The columns of boxes are u₀, u₁, v₀, v₁, whether the box reaches the boundary, and u and v of a
-    point of it.
-
-    `counts` are the numbers of solutions and boxes.
+    point of it. `counts` are the numbers of solutions and boxes.
     """
 
     places: NDArray[np.float64]

@@ -31,8 +31,9 @@ from .cell_bounds import (
 )
 
 # The rows of a tile of pairs, of LANES numbers: the normal; the cell; the forms of the pair; bounds
-# (see `CellBounds`); the inverse of the Hessian with its bounds (`inverse_of`); the tolerance of
-# solutions; and the solution: s, t, its error bound, D, the number of evaluations, a state.
+# (see `CellBounds`); the inverse of the Hessian with its bounds (`inverse_of`); bounds of the
+# errors of solutions by rounding, and by tolerances at joints; and the solution: s, t, its error
+# bound, D, the number of evaluations, a state.
 (
     NX, NY, NZ, U0, V0, HU, HV, A, B, C, P, Q, T0, T1, T2, T3, R0, R1, R2, R3,
     ROUND_S, ROUND_T, ROUND_2, REACHED, TOL_S, TOL_T,
