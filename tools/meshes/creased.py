@@ -21,9 +21,9 @@ _GIVEN: Any = None
 class CreasedMesh(Mesh):
     """A mesh of faces that meet at creases: faces of a part, or patches of a spline of nets.
 
-    It has all attributes and methods of a `Mesh`. `normals` are the means over the faces around a
-    vertex, `uv` the parameters on one of these faces, and `sample_index` is −1: no vertex is a
-    sample.
+    It has all attributes and methods of a `Mesh`. `normals` are the unit means of the normals at
+    the corners of triangles, `uv` the parameters on one of the faces around a vertex, and
+    `sample_index` is −1: no vertex is a sample.
 
     Attributes
     ----------

@@ -21,7 +21,7 @@ POINTS = 1 << 15
 class Front:
     """Triangles (T, 3, 3), listed by the squares of a grid in the xy plane.
 
-    The triangles of square k have the indices `owners`[starts[k]:starts[k + 1]].
+    The triangles of square k have the indices `owners[starts[k] : starts[k + 1]]`.
     """
 
     triangles: Array

@@ -25,7 +25,7 @@ _ALL_ALIKE: Any = None
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Mesh(Methods):
-    """A mesh of a surface, of T triangles between M vertices; made by `Samples.mesh`.
+    """A triangle mesh of a surface, with M vertices and T triangles; made by `Samples.mesh`.
 
     All arrays are C-contiguous; one that is not is copied.
 
@@ -34,22 +34,25 @@ class Mesh(Methods):
     vertices : (M, 3) float64 array
         Points of the surface.
     normals : (M, 3) float64 array
-        The unit normals of the surface at the vertices; at a pole the mean of those around it.
+        The unit normals of the surface at the vertices. Where the surface has no normal, as at an
+        apex, the mean of the normals at the adjacent vertices.
     uv : (M, 2) float64 array
         The parameters. They jump where a triangle crosses a seam.
     triangles : (T, 3) int64 array
         Rows of `vertices`, counterclockwise as seen from the tip of the normals; on a one-sided
         surface, of the normal at the first corner.
     sample_index : (M,) int64 array
-        The index of the sample at a vertex; −1 for points added on open boundaries and at poles.
+        The index of the sample at a vertex; −1 for points added on boundaries, at poles and at
+        apexes.
     name : str
         Label of the surface.
     sides : (T, 3) int64 array
         For each corner 1, or −1 if its normal and the normal at the first corner are on opposite
         sides of the triangle: on a one-sided surface normals change sides somewhere. By default 1.
     left_out : int
-        The number of samples that are no vertices: too close to others or, with an `angle`, in no
-        remaining triangle.
+        The number of samples that are not vertices: samples too close to others, samples removed
+        with small triangles, samples of components that are not regular and, with an `angle`,
+        samples in no remaining triangle.
     domain : ((u0, u1), (v0, v1)) of float or None
         The rectangle of the parameters, if known.
     boundary : pair of pairs of str or None
@@ -177,7 +180,10 @@ class Mesh(Methods):
 
     @property
     def volume(self) -> float:
-        """The volume that the triangles enclose, in L³; NaN unless the mesh is `closed`."""
+        """The volume that the triangles enclose, in L³; NaN unless the mesh is `closed`.
+
+        It is negative if the normals point inwards.
+        """
         if not self.closed:
             return float("nan")
         corners = self.vertices[self.triangles] - self.vertices.mean(axis=0)
@@ -194,7 +200,7 @@ class Mesh(Methods):
 
         They are the parameters, with the domain scaled to 1 × 1, and do not jump: across a seam
         they continue beyond 1, for textures that repeat. A pole has separate coordinates in each
-        triangle. `.glb` and `.obj` files have them.
+        triangle. `.obj` files have them.
 
         Examples
         --------
@@ -248,7 +254,7 @@ class Mesh(Methods):
         return line + self._quality()
 
     def _quality(self) -> str:
-        """Return the end of a summary: angles of triangles, and their deviations from normals."""
+        """Return the end of a summary: angles in triangles, angles from triangles to normals."""
         return (
             f"; 95 % have angles of at least {np.quantile(self.smallest_angles, 0.05):.1f}°; they "
             f"deviate from the normals by {self.angles.mean():.2f}° (mean), "
@@ -262,7 +268,7 @@ def cosines_of(
     triangles: NDArray[np.int64],
     sides: NDArray[np.int64],
 ) -> NDArray[np.float64]:
-    """Return the smallest cosine (T,) between each triangle's normal and those at its corners."""
+    """Return the smallest cosine (T,) between a triangle's normal and its corners' normals."""
     cosines = np.empty(len(triangles))
     if len(triangles):
         smallest_cosines(scaled(points), normals, triangles, sides, cosines)

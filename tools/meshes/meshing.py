@@ -230,7 +230,7 @@ def _at_apexes(
 
 
 def _fill_missing(normals: Array, triangles: Indices, sides: Indices) -> None:
-    """Set missing normals of vertices, as at poles, to the mean of the normals around them.
+    """Set missing normals of vertices, as at apexes, to the mean of the normals around them.
 
     The mean is 0 if the normals around a vertex are missing, too.
     """

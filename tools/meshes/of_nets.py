@@ -135,7 +135,7 @@ def _links(spline: NetSpline, inside: Parts) -> tuple[Links, Links]:
 
 
 def _normals(spline: NetSpline, patches: Indices, uv: Array, smooth: Links) -> Array:
-    """Return the unit normals (L T, 3) of patches at parameters; linked points share a normal.
+    """Return the unit normals (k, 3) of patches at parameters; linked points share a normal.
 
     If all patches around a point are singular there, they share a normal only if their normals
     agree.

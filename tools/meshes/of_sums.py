@@ -42,9 +42,9 @@ def mesh(
     """Return the boundary of the Minkowski sum of two convex bodies as a triangle mesh.
 
     It is the convex hull of the sums, with edges flipped. Each sum has to be on the hull, and the
-    hull on one side of its tangent plane: surfaces that fold, such as a torus, have no mesh. If
-    sums are selected, the hull closes all gaps: sums that are farthest along their normals are on
-    the Minkowski sum of the convex hulls of the two surfaces.
+    hull on one side of its tangent plane: surfaces that fold, such as a torus, have no mesh. The
+    hull of selected sums closes all gaps between them. Sums that are farthest along their normals,
+    for example, lie on the boundary of the Minkowski sum of the convex hulls of the two surfaces.
 
     Parameters
     ----------

@@ -31,8 +31,8 @@ def wrapped(
 ) -> Array:
     """Return positions (..., 2), shifted across seams into the unit square.
 
-    If `around` is given, they are shifted to be nearest to these positions instead; if they are to
-    stay `together`, only the first one is nearest.
+    If `around` is given, they are shifted to be nearest to these positions instead. With
+    `together`, all positions are shifted like the first one.
     """
     positions = positions.copy()
     for axis in sorted((0, 1), key=lambda k: boundary[k][0] != "mirrored"):
@@ -78,7 +78,8 @@ def on_side(axis: int, place: float, t: Array) -> Array:
 def boundary_of(spline: Spline, *, every: bool = False) -> Boundary:
     """Return the boundary conditions of a spline, with poles.
 
-    A collapsed side is a pole if the parameter along it is periodic; with `every`, also if not.
+    A side collapsed to an apex counts as a pole, too, if the parameter along it is periodic; with
+    `every`, also if not.
     """
     ends: list[list[BoundaryCondition]] = [[*kinds] for kinds in spline.boundary]
     for axis, place in collapsed_sides(spline):

@@ -16,12 +16,12 @@ from .links import is_closed
 from .mesh import Mesh
 
 # Rays begin this far below the surface, relative to the obstacle's size, to hit an obstacle in
-# contact. A ray may be as much more than perpendicular to the normal, for rounding.
+# contact. Because of rounding, the cosine between a ray and the normal may be as low as −BELOW.
 BELOW = 1e-9
 # Rays to an eye begin at this multiple of the largest distance between points of the surface and
 # its mesh.
 TIMES_AWAY = 2.0
-# The number of triangles in a leaf of the tree is at least this one, and less than its double.
+# A leaf of the tree has from LEAF to 2 · LEAF triangles, or fewer if there are fewer in all.
 LEAF = 4
 
 
@@ -114,11 +114,11 @@ def obstacle_from(given: Any) -> Obstacle:  # noqa: ANN401
 def visible(points: Array, normals: Array, to_eye: Array, bends: Array, surface: Mesh) -> Flags:
     """Return a mask (N,) of the points of a silhouette that a mesh of the surface does not hide.
 
-    `to_eye` (N, 3) are vectors to the eye, at least long enough to leave the mesh. Rays begin
-    farther from the surface than the mesh is, on the side where the tangents along these vectors
-    are: the surface bends towards the other side, which is that of the normal where `bends` (N,)
-    are positive. At flat points (0 or NaN) they begin on both sides. A point is seen if one of its
-    rays is free.
+    `to_eye` (N, 3) are vectors to the eye, at least long enough to leave the mesh. They are tangent
+    to the surface, and rays along them begin farther from the surface than the mesh is, on the side
+    from which the surface bends away. It bends towards the normal where `bends` (N,) are positive,
+    and away from the normal where they are negative. At flat points (0 or NaN) rays begin on both
+    sides. A point is seen if one of its rays is free.
     """
     solid = Obstacle.of(surface.vertices, surface.triangles)
     points, to_eye = solid.scaled(points), to_eye * solid.scale
@@ -140,8 +140,8 @@ def visible(points: Array, normals: Array, to_eye: Array, bends: Array, surface:
 def _tree_of(triangles: Array, margin: float) -> Tree:
     """Sort triangles (T, 3, 3) into a tree whose boxes are larger by a margin, for rounding.
 
-    Each node is halved along the longest side of the box of its centres. So that all leaves have as
-    many triangles, the last triangle is repeated.
+    Each node is halved along the longest side of the box around the centres of its triangles. The
+    last triangle is repeated, so that all leaves have the same number of triangles.
     """
     leaves = 1
     while len(triangles) >= 2 * LEAF * leaves:

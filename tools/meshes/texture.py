@@ -29,7 +29,7 @@ def corner_places(
     """Return texture coordinates (T, 3, 2) of corners: parameters, with the domain scaled to 1 × 1.
 
     Across a seam they continue beyond 1. A corner at a pole gets the mean coordinate of the two
-    other corners. Without a domain they are the parameters.
+    other corners. Without a domain or boundary conditions they are the parameters.
     """
     if domain is None or boundary is None:
         return uv[triangles]

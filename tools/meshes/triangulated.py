@@ -29,12 +29,12 @@ KINDS = ("shape", "normals")
 # corner, unless it already deviates more.
 LARGEST_DEVIATION = 30.0
 # Triangles with smaller angles (degrees) than these are removed, one bound after the other, until
-# at most the share PART of all triangles has an angle below ENOUGH.
+# at most the share PART of the triangles away from boundaries has an angle below ENOUGH.
 SMALLEST = (5.0, 10.0, 15.0, 20.0, 25.0)
 PART, ENOUGH = 0.05, 25.0
-# A bound of SMALLEST is given up if the mesh would lose more than this share of its samples to it.
-# Where the spacing doubles from one sample to the next, no better triangles exist, and more and
-# more edges would be collapsed.
+# A bound of SMALLEST is given up if the mesh would have lost more than this share of its samples
+# since the first bound. Where the spacing doubles from one sample to the next, no better
+# triangles exist, and more and more edges would be collapsed.
 MOST_LOST = 0.1
 # The arrays that flips and collapses change.
 CHANGED = ("triangles", "sides", "neighbours")
@@ -67,7 +67,7 @@ class Triangulated:
     boundary: Boundary
 
     def cosines(self) -> Array:
-        """Return the smallest cosine (T,) between a triangle's normal and those at its corners."""
+        """Return the smallest cosine (T,) between a triangle's normal and its corners' normals."""
         return cosines_of(self.points, self.normals, self.triangles, self.sides)
 
     def tangents(self) -> Array:
@@ -81,7 +81,8 @@ class Triangulated:
     def within(self, angle: float) -> Triangulated:
         """Remove the triangles that deviate by more than `angle` degrees from normals.
 
-        Raises InputError if an edge is then in more than two triangles.
+        Raises InputError if no triangle remains, no two of the remaining triangles share an edge,
+        or an edge is in more than two of them.
         """
         chosen = self.cosines() >= math.cos(math.radians(angle))
         if not chosen.any():
@@ -148,10 +149,10 @@ def checked_prefer(prefer: object) -> Prefer:
 def improved(mesh: Triangulated, prefer: Prefer, angle: float) -> Triangulated:
     """Return a mesh with better triangles, by flips and, where these do not suffice, collapses.
 
-    For "normals", edges are collapsed only to remove triangles without area. The same holds for
-    edges at samples on a graded grid, whose cells may be long; on such a grid, other vertices are
-    removed only for angles below the smallest bound. No flip makes a triangle deviate from normals
-    by more than `angle` degrees.
+    For "normals", vertices are removed only with triangles without area. The same holds for samples
+    on a graded grid, whose cells may be long; other vertices on such a grid are removed only for
+    angles below the smallest bound. No flip makes a triangle deviate from normals by more than
+    `angle` degrees.
     """
     least = math.cos(math.radians(min(angle, LARGEST_DEVIATION)))
     flip_edges(mesh, prefer, least)
@@ -207,7 +208,7 @@ def _has_good_shape(mesh: Triangulated) -> bool:
 def _without_small_angles(
     mesh: Triangulated, prefer: Prefer, smallest: float, least: float
 ) -> Triangulated:
-    """Collapse and flip edges at angles whose tangent is below `smallest`, while that helps."""
+    """Collapse edges at angles whose tangent is below `smallest`, and flip edges, if that helps."""
     for _ in range(ROUNDS):
         if mesh.tangents().min(initial=np.inf) >= smallest:
             break

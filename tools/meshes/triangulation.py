@@ -1,11 +1,11 @@
 """Delaunay triangulations of points in the parameter domain, across its seams.
 
-Qhull triangulates points of a surface without seams. A domain that is periodic in one parameter is
-mapped to a sphere, a pole to one point and an open side to a circle of latitude; the convex hull,
-without its plane faces inside these circles, is a Delaunay triangulation on the sphere. A Möbius
-band is half of a band that is symmetric about the centre. A domain that is periodic in both
-parameters is continued periodically in the plane, and one copy of each triangle is taken. An open
-domain is a rectangle.
+Qhull knows no seams, so that the domain is mapped to a surface without seams. A domain that is
+periodic in one parameter is mapped to a sphere, a pole to one point and an open side to a circle of
+latitude; the convex hull, without its plane faces inside these circles, is a Delaunay triangulation
+of the sphere. A Möbius band is half of a band that is symmetric about the centre of the sphere. A
+domain that is periodic in both parameters is continued periodically in the plane, and one copy of
+each triangle is taken. An open domain is a rectangle.
 """
 
 import math
@@ -34,10 +34,11 @@ LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
 # triangulated differently in their copies. If no points are copied, an attempt without
 # displacements comes first.
 DISPLACEMENTS = (1e-6, 1e-3)
-# Free points keep this distance from open sides.
+# Free points keep this distance from open sides and from poles.
 INSIDE = 5e-10
-# The height, relative to the shorter side, by which sides of a rectangle are curved outwards: so
-# their points become extreme. Triangles at more curved sides would be turned over on the rectangle.
+# The height, relative to the shorter side, by which sides of a rectangle are curved outwards, so
+# that their points are extreme points of the convex hull. Triangles at more curved sides would be
+# turned over on the rectangle.
 BULGE = 0.05
 # A domain that is periodic in both parameters is continued beyond its sides: in the first attempts
 # by these numbers of mean distances of points, then by these fractions of a period.
@@ -95,9 +96,9 @@ def _attempts(has_copies: bool, distance: float) -> list[tuple[float, float]]:
 
 
 def _curved(positions: Array, lengths: Array) -> Array:
-    """Return positions on the sides of the unit square, moved outwards by a parabola.
+    """Return positions, with those on a side of the unit square moved outwards, to a parabola.
 
-    In the plane, where u and v are multiplied by `lengths` (2,), all sides have equal heights.
+    After u and v are multiplied by `lengths` (2,), the four parabolas have equal heights.
     """
     heights = 4.0 * BULGE * positions * (1.0 - positions) * (lengths.min() / lengths)[::-1]
     outwards = np.where(positions == 0.0, -1.0, np.where(positions == 1.0, 1.0, 0.0))
@@ -166,10 +167,10 @@ def _on_sphere(positions: Array, boundary: Boundary, lengths: Array, axis: int) 
 def _one_of_each(
     triangles: Indices, original: Indices, count: int, is_mirrored: NDArray[np.bool_]
 ) -> Triangulation:
-    """Return each triangle once: the copy whose corner of the smallest index is no copy.
+    """Return each triangle once: the copy whose corner of the smallest index is an original.
 
-    Point k is a copy of `original[k]`; the first `count` points are no copies. A triangle with two
-    copies of one point is left out.
+    Point k is a copy of `original[k]`; the first `count` points are the originals. A triangle with
+    two copies of one point is left out.
     """
     a, b, c = (original[triangles[:, k]] for k in range(3))
     first = np.where(a < b, triangles[:, 0], triangles[:, 1])
@@ -212,7 +213,7 @@ def _in_strip(
     """Triangulate a strip of the domain with a margin; return the triangles of the strip.
 
     It is one of equal strips along u. Its triangles are those whose corner of the smallest index is
-    in the strip, and no copy.
+    an original in the strip, not a copy.
     """
     number, strips, margin = strip
     along = points[:, 0] * strips - number

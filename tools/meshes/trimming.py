@@ -29,9 +29,9 @@ Triangulate = Callable[[Vertices], tuple[Indices, Indices, Indices]]
 # on the boundary: the chords of the boundary are about as close to its curves.
 ON_LINE = 5e-3
 # The domain outside of the boundary is filled with points of a lattice. In the whole domain the
-# lattice has about as many points as there are vertices, but at least FEWEST and at most MOST. The
-# points in use are more than AWAY gaps from the boundary vertices, and added vertices on open sides
-# more than ASIDE gaps (see `_is_away`).
+# lattice has about as many points as there are vertices, but at least FEWEST and at most MOST.
+# Lattice points within AWAY gaps of a boundary vertex are left out, as are added vertices within
+# ASIDE gaps (see `_is_away`).
 FEWEST, MOST, AWAY, ASIDE = 400, 4000, 0.7, 0.3
 # The largest number of times that points are added to the boundary.
 ROUNDS = 8
@@ -82,7 +82,7 @@ class _Trim:
         """Return vertices inside the trim, and vertices outside, none of them on its boundary.
 
         The vertices inside are vertices of `given`. The vertices outside are vertices of `given` on
-        open sides, and new points that fill the domain, away from the boundary.
+        open sides and at poles, and new points that fill the domain, away from the boundary.
         """
         is_added = given.sample < 0
         inside = ~is_added | self._contains(given.positions)

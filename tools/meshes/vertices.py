@@ -1,4 +1,4 @@
-"""The vertices of a mesh: samples, and points added on open sides of the domain and at poles."""
+"""The vertices of a mesh: samples, and points added on boundaries and at poles."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ STEPS_A_CELL = 16
 # side.
 ON_LINE = 1e-6
 # Of samples closer to each other than this, relative to their mean distance in the domain, only the
-# first one is a vertex: triangulations displace points by a tenth of this distance.
+# first one is a vertex: triangulations first displace points by a tenth of this distance.
 NEARLY_EQUAL = 1e-5
 NEEDED = ("points", "normals", "uv")
 
@@ -42,7 +42,7 @@ class Vertices:
     """Vertices of a mesh, by positions (k, 2) in the unit square, the scaled domain.
 
     `sample` (k,) are the indices of their samples, or −1; `is_free` (k,) marks vertices that lie
-    neither on an open side nor at a pole.
+    neither on an open side nor at a pole nor, after trimming, on the boundary of the trim.
     """
 
     positions: Array
@@ -86,7 +86,7 @@ class Vertices:
         return Vertices(self.positions[kept], self.sample[kept], self.is_free[kept])
 
     def apart(self, boundary: Boundary) -> Vertices:
-        """Return these vertices without free vertices that nearly coincide with another vertex."""
+        """Return the vertices without the later, free one of two that nearly coincide."""
         periods = np.array([float(kinds[0] == "periodic") for kinds in boundary])
         places = _unique(self.positions, boundary)
         places = np.where(periods, places % 1.0, places)
@@ -109,7 +109,7 @@ def check_fields(samples: Samples) -> None:
     """Raise MissingFieldError unless samples have the fields that a mesh needs.
 
     Samples on a graded grid also need the indices of grid lines: the cells of the grid may be long,
-    and samples that are close to others in one direction are not left out.
+    and samples must not be left out for being close to others in one direction.
     """
     needed = NEEDED + (GRID_NAMES if samples.report.density == "aligned" else ())
     if lacking := [name for name in needed if name not in samples.fields]:
@@ -134,7 +134,7 @@ def _unique(positions: Array, boundary: Boundary) -> Array:
 
 
 def _poles(inner: Vertices, tree: KDTree, spline: Spline, boundary: Boundary) -> Iterator[Vertices]:
-    """Yield a vertex for each pole: a sample at the pole, or a new vertex if no sample is close."""
+    """Yield the vertices at poles: a sample at the pole, or a new vertex if no sample is close."""
     for axis, kinds in enumerate(boundary):
         for place, end in enumerate(kinds):
             if end == "pole":

@@ -11,8 +11,8 @@ from ....runtime.base.tolerances import QUALITY_GAIN
 from ....runtime.machine_code.jit import jit, loop
 from .flips import are_joined, corner_of, smallest_cosine, smallest_tangent
 
-# If triangles are far from the normals, a collapse may lower the smallest cosine by this: it moves
-# b.
+# A collapse, which moves b, may lower the smallest cosine between triangles and normals by this,
+# even if the cosine is small.
 COSINE_LOSS = 0.1
 
 
@@ -71,9 +71,10 @@ def cosine_with(points, normals, triangles, sides, t, b, a, turn):
 def tangent_after(points, normals, triangles, sides, neighbours, least, first, b, a, fan):
     """Return the smallest tangent around b after b is moved to a, or −1 if that is not allowed.
 
-    `first` is a triangle with both corners. The move is allowed if four conditions hold: the
+    `first` is a triangle with both corners. The move is allowed if five conditions hold: the
     smallest tangent rises; the smallest cosine is at least `least` afterwards, or falls by at most
-    COSINE_LOSS; b is not on a boundary; the mesh remains a surface.
+    COSINE_LOSS; b is not on a boundary; the mesh remains a surface; both triangles at the edge a b
+    have the same product of their sides at a and b.
     """
     count = find_fan(triangles, neighbours, first, b, a, fan)
     if count == 0:

@@ -15,7 +15,7 @@ from ....runtime.machine_code.jit import inline, jit, loop
 
 @loop
 def smallest_cosine(points, normals, a, b, c, side_a, side_b, side_c):
-    """Return the smallest cosine between the normal of a triangle and those at its corners a, b, c.
+    """Return the smallest cosine between a triangle's normal and those at its corners a, b, c.
 
     It is −2 if the triangle has no normal. The corners are sorted first, so that rounding does not
     depend on their order, and triangles without area cause no endless flips.
@@ -40,7 +40,7 @@ def smallest_cosine(points, normals, a, b, c, side_a, side_b, side_c):
 
 @jit
 def smallest_cosines(points, normals, triangles, sides, cosines):
-    """Write the smallest cosine between the normal of each triangle and those at its corners."""
+    """Write the smallest cosine between each triangle's normal and the normals at its corners."""
     for t in range(triangles.shape[0]):
         cosines[t] = smallest_cosine(
             points,
