@@ -138,8 +138,9 @@ def read_samples(path: PathLike) -> Samples:
     """Read samples from a `.npz` or `.ply` file that `write_samples` wrote.
 
     A `.ply` file that another program rewrote can be read if it is binary and has all the columns.
-    If the comments that hold the report are lost, the report's numbers are None. A file with fewer
-    fields lists them in a comment. Nothing in the file is unpickled.
+    If the comments that hold the report are lost, the report's numbers are None, except the number
+    of samples. A file with only some of the fields lists them in a comment, which must not be lost.
+    Nothing in the file is unpickled.
 
     Parameters
     ----------

@@ -20,9 +20,9 @@ STEP = 2.0**-27
 LARGEST = 2**31 - 1
 # A point format of LAS 1.4 without times and colours.
 FORMAT, VERSION = 6, "1.4"
-# The byte offset of the date that laspy writes to a file; a date of 0 is unknown.
+# The byte offset of the date that laspy writes to a file; 0 means an unknown date.
 DATE = 90
-# The user and the number of the record that holds the report.
+# The user ID and the record ID of the variable-length record that holds the report.
 USER, RECORD = "gaussmap", 1
 
 

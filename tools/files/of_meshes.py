@@ -37,9 +37,9 @@ def write(self: Mesh, path: str | os.PathLike[str]) -> None:
           need the extra `vtk`.
         - `.vtp`: VTK's PolyData with normals, uv and `sample_index`.
         - `.glb`: binary glTF with normals, and u and v as the attribute `_UV`, float32; needs the
-          extra `trimesh`. It is closed where the mesh is; but a vertex on a sharp edge of a CAD
-          part is repeated for each of its normals. Coordinates are unchanged, while viewers show
-          y upwards.
+          extra `trimesh`. It is closed where the mesh is; but a vertex on a crease, such as a
+          sharp edge of a CAD part, is repeated for each of its normals. Coordinates are unchanged,
+          while viewers show y upwards.
 
     Raises
     ------

@@ -39,9 +39,9 @@ def checked_crs(crs: str | int | None, name: str) -> Any:  # noqa: ANN401
 def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any:  # noqa: ANN401
     """Return the CRS of points, whose coordinates are lengths, not degrees.
 
-    It is `target` if given; else `source` or, if `source` has degrees, UTM. x and y are coordinates
-    in `source`. The result is None if neither is given. Raises InputError if `target` has degrees,
-    or if no zone of UTM fits.
+    It is `target` if given; else `source` or, if `source` has degrees, UTM (near the poles, UPS).
+    x and y are coordinates in `source`. The result is None if neither is given. Raises InputError
+    if `target` has degrees, a latitude exceeds 90°, or no zone of UTM fits.
     """
     if target is not None and target.is_geographic:
         raise InputError(

@@ -39,7 +39,7 @@ def write_stl(mesh: Mesh, path: Path) -> None:
     rows = np.zeros(len(corners), _STL_ROW)
     with np.errstate(all="ignore"):  # values beyond single precision, triangles without area
         edges = corners[:, 1:] - corners[:, :1]
-        edges *= scales_to_one(np.abs(edges).max(axis=2))[..., None]  # each: no product underflows
+        edges *= scales_to_one(np.abs(edges).max(axis=2))[..., None]  # each to 1: no underflow
         across = np.cross(edges[:, 0], edges[:, 1])
         size = np.sqrt(np.einsum("ij,ij->i", across, across))[:, None]
         np.divide(across, size, out=rows["normal"], where=size > 0.0, casting="same_kind")
@@ -53,8 +53,8 @@ def write_stl(mesh: Mesh, path: Path) -> None:
 def write_glb(mesh: Mesh, path: Path) -> None:
     """Write triangles, vertices, normals, and u and v as the attribute _UV, in single precision.
 
-    A vertex on a sharp edge of a CAD part is repeated for each of its normals; no other vertex is
-    repeated.
+    A vertex on a crease, such as a sharp edge of a CAD part, is repeated for each of its normals;
+    no other vertex is repeated.
     """
     trimesh = from_extra("trimesh", "trimesh", "a .glb file")
     if np.abs(mesh.vertices).max() > np.finfo(np.float32).max:
