@@ -17,7 +17,7 @@ def dimensions_of(
 ) -> Dimensions:
     """Return the dimensions of a geometry, by name, as `Face.dimensions` has them.
 
-    The module `saving` says what the numbers of a geometry are.
+    The module `saving` describes the numbers of a geometry.
     """
     if geometry.kind not in ("plane", "cylinder", "cone", "sphere", "torus"):
         return {}

@@ -1,9 +1,10 @@
 """Points with given normals in the gaps that rounded numbers leave between smoothly joined faces.
 
-On an edge with the tangent t, n·t = 0. In a face, the height n·x has a slope s at the edge, on the
-way into the face. If the slopes of both faces have one sign, n is between their normals: the edge
-has a point with the normal n, as a crease has. A face has a point with the normal n near the edge
-if s and the second derivative of the height, on the way into the face, have different signs.
+At a point of an edge with the tangent t, n can only be a normal if n·t = 0. Let s be the slope of
+the height n·x from this point into a face. If both slopes s have the same sign, n is between the
+normals of the two faces: the edge has a point with the normal n, like a crease. A face has a point
+with the normal n near the edge if s and the second derivative of n·x in the direction into the face
+have different signs.
 """
 
 from __future__ import annotations
@@ -31,34 +32,37 @@ from .results import PartSpace, space_of
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-# Gaps wider than WIDEST are edges. An edge is straight in the parameters of a face if it is nowhere
-# off a straight line by more than STRAIGHT times the domain.
+# Where normals differ by more than WIDEST, an edge is a crease and has no gap. An edge is straight
+# in the parameters of a face if it is nowhere off a straight line by more than STRAIGHT times the
+# domain.
 WIDEST, STRAIGHT = math.radians(CREASE_ANGLE), 1e-12
-# A face is developable where the larger radius of curvature exceeds FLAT times the size of edges:
-# coordinates rounded to 7 digits bend it less than that.
+# A face counts as developable where the larger radius of curvature exceeds FLAT times the extent of
+# all edges: rounding coordinates to 7 digits bends a face less than that.
 FLAT = 1e6
-# Gaps are measured at MEASURED points of an edge. Normals along it are known at PLACES places; if
-# neighbours differ by more than JUMP, the edge has a pole or a corner between them.
+# Gaps are measured at MEASURED points of an edge. Normals along it are tabulated at PLACES points;
+# if successive normals differ by more than JUMP, the edge has a pole or a corner between them.
 MEASURED, PLACES, JUMP = 7, 257, 0.25
 SHARES = (np.arange(MEASURED) + 0.5) / MEASURED
-# Edges are in cells of directions with this number of cells per unit.
+# The number of cells, per unit of each coordinate, of the grid of directions for normals of edges.
 CELLS = 20
-# STEPS of Newton's method lead to a place of an edge where |n·t| is at most SETTLED. Where the
-# derivative of n·t vanishes, too, the place is known up to the root of that. Places closer than
-# APART are one; it is settled if they are closer than SAME.
+# STEPS steps of Newton's method lead to a position on an edge where |n·t| is at most SETTLED. Where
+# the derivative of n·t vanishes, too, the error of the position is about the root of SETTLED.
+# Positions closer than APART count as one, which is settled if they are closer than SAME.
 STEPS, SETTLED, SAME = 4, 1e-12, 1e-9
 APART = math.sqrt(SETTLED)
-# A side of an edge is inside of the face if places at this distance are, relative to the domain.
+# A face lies on a side of an edge if points at this distance from the edge, relative to the domain,
+# are inside the face.
 BESIDE = 1e-6
 
 
 class AtEdges(NamedTuple):
-    """Places of edges where n·t = 0 for some of the normals, close to those of both faces.
+    """Points of edges where n·t = 0 for a given normal n, close to the normals of both faces.
 
-    `numbers` (k,) are the rows of the normals; `pieces` (k, 2) those of the part. Both faces have
-    the parameters `uv` (k, 2, 2), the `normals` (k, 2, 3), the slopes (k, 2) of n·x on the way into
-    the face, the second derivatives of n·x `along` (k, 2) the edge, and K and H (k, 2, 2). Places
-    that are not `settled` (k,) are beside corners, where tangents jump.
+    `numbers` (k,) are the indices of the normals n, and `pieces` (k, 2) those of both faces in the
+    space of the part. For both faces: the parameters `uv` (k, 2, 2), the `normals` (k, 2, 3), the
+    `slopes` (k, 2) of n·x into the face, the second derivatives (k, 2) of n·x `along` the edge, and
+    the `curvatures` K and H (k, 2, 2). Where `settled` (k,) is False, Newton's method has not
+    converged, as beside corners, where tangents jump.
     """
 
     numbers: Indices
@@ -79,7 +83,7 @@ class AtEdges(NamedTuple):
 
     @property
     def between(self) -> Flags:
-        """Whether the normal is between those of both faces (k,)."""
+        """Whether the normal is between the normals of both faces (k,)."""
         return self._is_down[:, 0] == self._is_down[:, 1]
 
     @property
@@ -103,12 +107,13 @@ class EdgeGaps:
 
     Creases inside of a face are such edges, too, with the same piece twice; they are `exact`: since
     both sides are searched without a tolerance, gaps of all widths count. Neither face is
-    developable. Edge i goes from `starts`[i] (2, 2) by `steps`[i] (2, 2) on both `pieces`[i] of the
-    space; it may be `closed`. The faces are on the sides `inward`[i] (2,) of it: 1 is that of
-    N × t. Normals of the first face at PLACES places of each edge are in a `tree`, and in `cells`
-    of directions. At each place, `spread` (3,) is the change of the normal from place to place, and
-    `bends` the length of the change of this change. Normals in gaps are within `slack` of those of
-    their edge, and within `reach` of some in the tree. Edges end or cross at `corners` (C, 3).
+    developable. In the parameters of its two `pieces[i]`, edge i runs from `starts[i]` (2, 2) to
+    `starts[i] + steps[i]`; it may be `closed`. `inward[i]` (2,) is 1 for a face on the side of
+    N × t, else −1. The normals of the first face at PLACES points of each edge are in a `tree`, and
+    `cells` marks the directions near them. At each of these points, `spread` (3,) is the change of
+    the normal per step, and `bends` the length of its second difference. A normal in a gap is
+    within `slack` of a normal of the edge, and within `reach` of a normal in the tree. Edges end or
+    cross at `corners` (C, 3).
     """
 
     space: PartSpace
@@ -156,7 +161,7 @@ class EdgeGaps:
         if not known.any():
             return None
         lines = _Lines._make(x[known] for x in lines)
-        # Gaps are measured at some places only, and may be wider at others.
+        # Gaps are measured at a few points, and may be wider at others.
         slack = min(4.0 * float(gaps[known].max()), WIDEST) + TURNED
         return cls._along(space, lines, inward[known], size, slack)
 
@@ -206,7 +211,7 @@ class EdgeGaps:
             near &= np.linalg.norm(x.normals - given, axis=1) <= gaps + TURNED
         settled = np.maximum(one.off, other.off) <= SETTLED
         share = np.where(self.closed[owner] & (one.share >= 1.0 - SAME), 0.0, one.share)
-        # Neighbours lead to one place, as do both ends of a closed edge.
+        # Neighbouring starts lead to one position, as do both ends of a closed edge.
         order = np.lexsort((share, owner, numbers))
         order = order[near[order]]
         same = (np.diff(numbers[order]) == 0) & (np.diff(owner[order]) == 0)
@@ -225,7 +230,7 @@ class EdgeGaps:
         )  # fmt: skip
 
     def _near(self, normals: Array) -> tuple[Indices, Indices, Array]:
-        """Return where edges may have the normals (S, 3): indices of normals, edges, and shares."""
+        """Return indices of normals (S, 3), edges that may have them, and positions in [0, 1]."""
         (near,) = np.nonzero(self.cells[_cell_of(normals)])
         found = self.tree.query_ball_point(normals[near], self.reach)
         numbers = np.repeat(near, [len(x) for x in found])
@@ -241,7 +246,10 @@ class EdgeGaps:
         return numbers[near], owner, shares
 
     def _solved(self, edges: Indices, side: Indices, shares: Array, normals: Array) -> _Side:
-        """Return the places of edges, near `shares` (k,), where n·t = 0 on the given sides (k,)."""
+        """Return the points of edges, near the positions `shares` (k,), where n·t = 0.
+
+        `side` (k,) are the sides of the edges, 0 or 1, on which n·t is computed.
+        """
         pieces = self.pieces[edges, side]
         starts, steps = (x[edges, side] for x in (self.starts, self.steps))
         du, dv = steps.T[:, :, None]
@@ -264,7 +272,7 @@ class EdgeGaps:
 
 
 class _Side(NamedTuple):
-    """One face at places of edges; see `AtEdges`. `off` (k,) are the lengths |n·t|."""
+    """One face at points of edges; see `AtEdges`. `off` (k,) are the values of |n·t|."""
 
     point: Array
     uv: Array
@@ -293,7 +301,7 @@ def _jets(space: PartSpace, pieces: Indices, uv: Array) -> Array:
 
 
 def _cell_of(normals: Array) -> tuple[Indices, Indices, Indices]:
-    """Return the cells of directions (k, 3), which leave out a margin."""
+    """Return the indices of the cells of directions (k, 3); the grid has a margin of two cells."""
     x, y, z = np.rint(CELLS * normals).astype(np.int64).T + CELLS + 2
     return x, y, z
 
@@ -332,7 +340,7 @@ def _between_faces(space: PartSpace) -> _Lines:
 
 
 def _inside_faces(space: PartSpace) -> Iterator[_Lines]:
-    """Yield the knots of faces where tangent planes jump, and seams of closed faces."""
+    """Yield the knot lines of faces across which tangent planes jump, and seams of closed faces."""
     for k, piece in enumerate(space.pieces):
         surface = piece.surface
         if piece.face.geometry.net is None or surface.tape is None:
@@ -366,9 +374,9 @@ def _corners(space: PartSpace, lines: _Lines) -> Array:
 
 
 def _inward(space: PartSpace, lines: _Lines, side: int) -> Array:
-    """Return whether faces are on the side of N × t (1) of edges, or on the other one (−1).
+    """Return 1 for edges whose face is on the side of N × t, −1 for a face on the other side.
 
-    Return 0 if a face is on both sides, or on none.
+    Return 0 if the face is on both sides, or on none.
     """
     owner, step = lines.pieces[:, side], lines.steps[:, side]
     uv, count = lines.starts[:, side] + 0.5 * step, np.arange(len(owner))

@@ -133,7 +133,7 @@ def _costs(space: PartSpace, sides: Sides) -> Array:
 def _divided(places: Array, costs: Array, most: int) -> Array:
     """Return positions from the first to the last of `places`, with the same cost for each step.
 
-    `costs` are those of the steps between `places`. The new steps cost at most 1 each, unless this
+    `costs` belong to the steps between `places`. The new steps cost at most 1 each, unless this
     takes more than `most` steps. There are at least FEWEST steps.
     """
     if not len(costs):

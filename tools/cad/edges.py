@@ -37,8 +37,8 @@ class Edges:
     """E edges of a part, each between two faces, as polylines of parameters.
 
     `pieces` (E, 2) are the indices of the two pieces of the space beside each edge. The points of
-    edge i are the rows `starts`[i] to `starts`[i + 1] of `points` (k, 4): u, v on the surface of
-    its first piece, and u, v on the surface of its second piece.
+    edge i are the rows `starts[i]:starts[i + 1]` of `points` (k, 4): u, v on the surface of its
+    first piece, and u, v on the surface of its second piece.
     """
 
     space: PartSpace
@@ -83,8 +83,8 @@ def edges_of(space: PartSpace, *, seams: bool = False) -> Edges:
 def between_two(part: Part, *, seams: bool = False) -> tuple[Indices, Array, Indices]:
     """Return the edges between two faces: face indices (E, 2), points (k, 4) and starts (E + 1,).
 
-    The points of edge i are the rows starts[i] to starts[i + 1]: u, v on the first face, and u, v
-    on the second face. With `seams`, both faces may be the same.
+    The points of edge i are the rows starts[i]:starts[i + 1]: u, v on the first face, and u, v on
+    the second face. With `seams`, both faces may be the same.
     """
     arrays = part.arrays
     first, faces = arrays["edge_side_starts"], arrays["side_faces"]

@@ -37,9 +37,10 @@ CLOSE = 1e-3
 # The length of a side is measured at this number of points.
 PLACES = 5
 OPEN_BOX = KINDS.index("open")
-# Where faces of a file meet smoothly, rounded numbers leave gaps between their normals, of GAP at
-# most. Therefore surfaces are searched beyond their open sides, by the fraction BEYOND of the
-# domain. A point found there counts if its normal differs by at most TURNED from that at the side.
+# Where faces of a file meet smoothly, rounded coordinates leave gaps between their normals. Because
+# of gaps up to GAP, surfaces are searched beyond their open sides, by the fraction BEYOND of the
+# domain; `edge_gaps` is for wider gaps. A point beyond a side counts if its normal differs by at
+# most TURNED from that at the side.
 GAP, BEYOND = 1e-9, 1e-6
 TURNED = 1.5 * GAP
 # The indices of the Taylor coefficients of order 1 and 2 in arrays of bounds.

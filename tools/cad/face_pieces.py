@@ -72,7 +72,7 @@ RASTER = 64
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FacePiece(Piece):
-    """A face of a part, restricted to a `reach`; the normals of its surface point outward."""
+    """A face of a part, restricted to a `reach`; its surface has the orientation of the face."""
 
     face: Face
     surface: Surface
@@ -145,7 +145,7 @@ class FacePiece(Piece):
 
     def jets(self, u: Array, v: Array) -> Array:
         """Return 2-jets (k, 6, 3) at parameters."""
-        return self.surface.unchecked_jets(*np.array([u, v]))  # many faces, few points
+        return self.surface.unchecked_jets(*np.array([u, v]))  # checks are slow for few points
 
     def geometries(self, threads: int | None) -> list[OnSpline]:
         """Return the splines on which points are searched; GaussmapError if there is no spline."""
@@ -185,7 +185,7 @@ class FacePiece(Piece):
         return degrees.astype(np.int64)
 
     def _samples(self, normals: Array, found: FacePlaces) -> Samples:
-        """Return samples at those of the points `found` that are inside the trim, and at tips.
+        """Return samples at the points `found` that are inside the trim, and at tips.
 
         `normals` (S, 3) are the normals of the search.
         """
@@ -193,7 +193,7 @@ class FacePiece(Piece):
         places = np.column_stack([found.uv, found.radius, found.sign, 0.0 * found.sign])[inside]
         components, open_ = components_in(self.trim, found.undecided, normals, self.jets)
         numbers, places = with_components(found.numbers[inside], places, components)
-        for tip in self.tips:  # it comes after the other points with a normal
+        for tip in self.tips:  # tips come after the other points of a normal
             has = tip.degrees(normals) != 0
             if self.reach is not None:
                 has &= self.reach._holds(tip.point + 0.0 * normals, normals)
@@ -242,8 +242,8 @@ class FacePiece(Piece):
         """Return a mask (k,) of the parameter pairs (k, 2) that belong to the face.
 
         They are inside its trim or, on faces of files, in the gap beside it: a step in one of four
-        directions leads into the trim. The step turns the normal by about `GAP`, plus `GAP` times
-        the domain; without the latter part it is at most `FAR` times the domain.
+        directions leads into the trim. The step is a sum of two parts: one turns the normal by
+        about `GAP`, and is at most `FAR` times the domain; the other is `GAP` times the domain.
         """
         trim, inside = self.surface.trim, self.contains(uv)
         if trim is None or inside.all() or self.face.geometry.surface is not None:

@@ -78,7 +78,7 @@ def face_surface(
         surface = Surface(name, function, *ends, trim=trim, assumed_open=assumed)
         return surface.flipped() if is_reversed else surface
     # A face with a frame of its own is placed and reversed in one step, since such faces are
-    # numerous. Both ends of u have the same boundary condition.
+    # numerous. Reversing u keeps the boundary conditions, since both ends of u have the same one.
     moved = Moved(Surface(name, function, *ends), shape.placement, is_reversed, shape.domain[0])
     if is_reversed and trim is not None:
         trim = trim.turned(shape.boundary)
@@ -251,7 +251,7 @@ def _offset(geometry: Geometry, domain: Domain) -> Shape:
 def simplest(geometry: Geometry, domain: Domain) -> Geometry:
     """Replace an offset of a plane, cylinder, cone, sphere or torus by a surface of that kind.
 
-    Other geometries, among them offsets of a torus that have passed its axis, are returned with the
+    Other geometries, among them offsets of a torus that meets its own axis, are returned with the
     simplest basis.
     """
     if geometry.kind != "offset" or geometry.basis is None:
@@ -285,7 +285,7 @@ def _moved_numbers(basis: Geometry, distance: float, domain: Domain) -> Array | 
         numbers[12] += moved * math.cos(angle)
     elif abs(numbers[12]) > abs(numbers[13]):
         numbers[13] += moved
-    else:  # the offset has passed the axis, and its normal points towards the axis
+    else:  # the torus meets its axis, and its normal changes sides there
         return None
     return numbers
 

@@ -55,7 +55,7 @@ def part_of_surfaces(
 def _checked(surfaces: object) -> list[Surface]:
     """Return the surfaces; surfaces that are given by a grid of points become their splines.
 
-    Raises InputError for an empty list, and for entries that are no surfaces.
+    Raises InputError for an empty list, and for entries that are not surfaces.
     """
     given = None if isinstance(surfaces, Surface) else listed(surfaces)
     if not given:

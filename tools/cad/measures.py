@@ -28,7 +28,7 @@ BESIDE = 1e-6
 
 
 def volume_of(part: Part) -> float:
-    """Return the volume of the closed solids, in L³; SurfaceError if there are none."""
+    """Return the volume of the closed solids, in L³; SurfaceError if it is not known."""
     closed = _closed_faces(part)
     failed = [x.index for x in part.failed if x.reason != NO_AREA]
     if not closed.any() or closed[failed].any() or part.about.get("source_indices"):

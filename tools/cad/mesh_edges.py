@@ -29,9 +29,10 @@ SAME = 1e-7
 class SampledEdges:
     """The vertices of a mesh on edges of a part: `points` (M, 3), in the unit L of the part.
 
-    By index of an edge: `numbers`, the indices of its vertices, and `shares`, their positions in
-    [0, 1]. By index of a side of an edge: `uv`, the parameters (k, 2) of the same vertices on the
-    surface beside it, in the direction of the edge, and `edges`, the index of the edge.
+    `numbers` and `shares` give, by index of an edge, the indices of its vertices and their
+    positions in [0, 1]. `uv` and `edges` give, by index of a side of an edge, the parameters (k, 2)
+    of the same vertices on the face of this side, in the direction of the edge, and the index of
+    the edge.
     """
 
     points: Array
@@ -218,7 +219,7 @@ class MeshEdges:
         return found
 
     def sampled(self) -> SampledEdges:
-        """Return the vertices on edges in a mesh, whose count must be `least` or more.
+        """Return the vertices on edges in a mesh of `spacing.count` vertices, at least `least`.
 
         Edges are coarser than the interior of faces if equally fine edges would take too many
         vertices.

@@ -63,9 +63,9 @@ class FaceBorder:
 def triangles_of(border: FaceBorder, places: Array) -> tuple[Indices, Indices]:
     """Return triangles (k, 3), as indices of positions (n, 2) in a plane, inside a boundary.
 
-    The first positions are those of the boundary. Triangles run counterclockwise. Also return the
+    The positions on the boundary come first. Triangles run counterclockwise. Also return the
     constrained segments (m, 2). Of equal positions, only the first is a vertex. Raises Crossing if
-    the boundary crosses itself.
+    the boundary crosses itself, or encloses nothing.
     """
     cdt = from_extra(*EXTRA)
     low = places.min(axis=0)

@@ -1,7 +1,7 @@
 """Sizes of triangles that grow slowly from the edges of a part into its faces.
 
-An edge is as fine as the finest adjacent face requires. So, without grading, a plane beside a
-fillet would have badly shaped, long triangles at their common edge.
+An edge is as fine as the finest adjacent face requires. Without grading, a plane beside a fillet
+would therefore have badly shaped, long triangles at their common edge.
 """
 
 import numpy as np
@@ -22,8 +22,8 @@ UNEVEN = 0.5
 def graded(edges: MeshEdges) -> PartSpace:
     """Return the space of `edges` with sizes that grow slowly from the edges into the faces.
 
-    At an edge, the size is the length of its segments in a mesh. Segments that are hardly shorter
-    than the largest size on a face do not change the sizes on that face.
+    At an edge, the size is the length of its segments in a mesh. Segments longer than 1 − GROWTH
+    times the largest size on a face do not change the sizes on that face.
     """
     space, sampled = edges.space, edges.sampled()
     step, points = step_of(space, edges.spacing.count), space.scaled_points(sampled.points)
@@ -47,7 +47,7 @@ def graded(edges: MeshEdges) -> PartSpace:
 
 
 def _halved(space: PartSpace, cells: Cells) -> Cells:
-    """Return the graded first cells of a space, halved until sizes vary little inside each cell."""
+    """Return the graded initial cells of a space, halved until sizes vary little in each cell."""
     done, bare = list[Cells](), space.between(0.0)
     growth = np.zeros(len(space.pieces))
     for k, sources in space.sources.items():

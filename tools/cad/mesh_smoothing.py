@@ -111,8 +111,8 @@ def _least(values: Array, owner: Indices, count: int) -> Array:
 def _first(chosen: Indices, better: Flags, now: Array, around: Indices, count: int) -> Indices:
     """Return the vertices that move in this round, as indices in `chosen`.
 
-    Only vertices that `better` flags move: those whose smallest angle grows. Of two such
-    neighbours, only the vertex with the smaller angle moves.
+    Only vertices that `better` flags move: their smallest angle grows. Of two such neighbours, only
+    the vertex with the smaller angle moves.
     """
     rank = np.full(count, len(chosen))
     rank[chosen[better]] = np.argsort(np.argsort(now[better]))

@@ -1,9 +1,9 @@
 """The spacing of vertices in a mesh of a part, and the planes in which faces are triangulated.
 
-For well-shaped triangles, the vertices follow the target density of the space, proportional to κ.
-For triangles close to the normals of the part, each parameter of a face is replaced by the angle
-through which the normal turns along it, and vertices are evenly spaced in the plane of these two
-angles. So rulings, and the interior of planes, need no vertices.
+For well-shaped triangles, the vertices follow the target density of the space, proportional to the
+curvature κ = max(|κ₁|, |κ₂|). For triangles close to the normals of the part, each parameter of a
+face is replaced by the angle through which the normal turns along it, and vertices are evenly
+spaced in the plane of these two angles. Rulings, and the interior of planes, then need no vertices.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ class ByNormals(Spacing):
         return np.maximum(costs, np.maximum(CURVED * turns, straight) / steps[:, None])
 
     def plane(self, piece: int, uv: Array, tangents: Array) -> Array:
-        """Return planar coordinates (k, 2) of parameters; for plane faces, those of `Spacing`."""
+        """Return planar coordinates (k, 2) of parameters; for plane faces, as `Spacing` does."""
         turned = self.pieces[piece]
         return turned.turned(uv) if turned.turns else super().plane(piece, uv, tangents)
 
@@ -157,7 +157,7 @@ def _best_steps(planes: list[TurnedPiece], areas: Array, count: int) -> Array:
     and area F in its plane has p/s vertices on its boundary and F/s² inside. At the minimum, the
     area of a face in space times the derivative of its mean angle by s is the derivative of its
     number of vertices by s, up to a factor that all faces share. No step exceeds `LONGEST` times
-    the mean step. `areas` are those of the faces in space.
+    the mean step. `areas` are the areas of the faces in space.
     """
     around = np.array([x.perimeter if x.turns else 0.0 for x in planes])
     inside = np.array([0.0 if x.is_ruled else x.size**2 for x in planes])
@@ -303,7 +303,7 @@ def _places(piece: FacePiece, axis: int) -> Array:
 def _angles(normals: Array, inside: Flags, axis: int) -> Array:
     """Return, for each step along an axis of a grid, the largest angle between normals, (k − 1,).
 
-    `normals` (k, l, 3) are those at the points of the grid. A pair of neighbours along the axis
+    `normals` (k, l, 3) are the normals at the grid points. A pair of neighbours along the axis
     counts if one of them is inside the trim.
     """
     n = np.moveaxis(normals, axis, 0)

@@ -29,7 +29,7 @@ def nurbs_of_net(net: Net) -> Nurbs:
 def nurbs_of_curve(net: Net, along: Array, length: Interval) -> Nurbs:
     """Return the surface of a NURBS curve, with parameter u, translated along a vector (3,) by v.
 
-    v runs over `length`. Raises InputError if the net is no curve.
+    v runs over `length`. Raises InputError if the net is not a curve.
     """
     (degree,), (knots,) = net.degrees, net.knots
     points = net.points[:, None] + along * np.array(length)[:, None]
@@ -106,7 +106,7 @@ def _at_knot(knots: Array, end: float, slack: float) -> float:
 def _continued(nurbs: Nurbs, axis: int, interval: Interval) -> Nurbs:
     """Return one NURBS over an interval, joined from copies of a NURBS shifted by its period.
 
-    A NURBS whose ends along the axis do not meet is returned unchanged.
+    A NURBS that is not clamped, or whose ends along the axis do not meet, is returned unchanged.
     """
     (first, last), degree = nurbs.domain[axis], nurbs.degrees[axis]
     points, knots = np.moveaxis(nurbs.points, axis, 0), nurbs.knots[axis]

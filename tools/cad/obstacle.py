@@ -20,8 +20,8 @@ def obstacle_of(given: Part | Surface) -> Obstacle:
     """Return the mesh of a part or surface, cached with it; raises and warns as meshes do.
 
     If a part was selected from another part in this session, the mesh is that of the whole part;
-    of a surface that is trimmed to a reach, it is that of the whole surface. Triangles face where
-    normals point, also if these point into a closed surface.
+    for a surface that is trimmed to a reach, it is that of the whole surface. Triangles have the
+    orientation of the normals, even if the normals point into a closed surface.
     """
     if isinstance(given, Surface):
         return kept(given, obstacle_of, lambda: _of_surface(without_reach(given)))

@@ -1,9 +1,9 @@
 """Offset surfaces: points at a distance from another surface, the basis, along its normals.
 
 Points and first derivatives follow from the 2-jet of the basis. Second derivatives also need its
-third derivatives, which are differences of its second derivatives at nine points in one knot span.
+third derivatives: finite differences of its second derivatives at nine points in one knot span.
 The error of the second derivatives, relative to the largest one, is about 1e-12, or 1e-10 where the
-reader has interpolated a circle or another curve that is no NURBS.
+reader has interpolated a circle or another curve that is not a NURBS.
 """
 
 from __future__ import annotations

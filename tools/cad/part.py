@@ -66,8 +66,8 @@ class Part(Methods, Whole):
     Raises
     ------
     InputError, UnknownNameError
-        For invalid arguments, an unknown unit, a trim that is no single set of loops in the domain,
-        and if the surfaces cannot be oriented consistently, as those of a Möbius band.
+        For invalid arguments, an unknown unit, a trim that is not one set of loops in the domain,
+        and if the surfaces cannot be oriented consistently, as on a Möbius band.
     SurfaceError
         If a surface cannot be evaluated, or is no larger than the tolerance.
 
@@ -252,7 +252,9 @@ class Part(Methods, Whole):
 
     @cached_property
     def closed(self) -> bool:
-        """Whether each edge has exactly two adjacent faces.
+        """Whether each edge has exactly two sides, on one face or on two.
+
+        False if a face has `failed`, or if the edges around a face are not known.
 
         Examples
         --------
@@ -380,7 +382,10 @@ class Face:
 
     @property
     def source_index(self) -> int:
-        """The index in the part that was read; `index` unless the face was selected."""
+        """The index of this face in the part that was read or made.
+
+        It equals `index` unless `part` is a selection.
+        """
         places = self.part.about.get("source_indices")
         return int(places[self.index]) if places else self.index
 
@@ -467,7 +472,7 @@ class Face:
         """The surface with its trim.
 
         Its parameters are those of the file, except that u is reversed if the face is `reversed`,
-        so that normals point outward. Raises SurfaceError for a face that failed.
+        so that its normals are those of the face. Raises SurfaceError for a face that failed.
         """
         if self.reason:
             raise SurfaceError(f"{self.label} cannot be used: {self.reason}.")

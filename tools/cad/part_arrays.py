@@ -103,7 +103,7 @@ def _table(faces: Sequence[FaceRecord]) -> Arrays:
 def _basis(geometries: list[Geometry]) -> list[int]:
     """Append the bases of offsets to `geometries`; return the index of each basis, −1 for none."""
     places: list[int] = []
-    for geometry in geometries:  # the list grows, and the loop also visits what is appended
+    for geometry in geometries:  # the list grows, and the loop also visits the appended bases
         if geometry.basis is None:
             places.append(-1)
         else:

@@ -47,8 +47,8 @@ from .results import PartSpace, space_of
 
 # Where a face has no normal, the normal is taken at this fraction of the way into the triangle.
 INSIDE = 1e-6
-# Edges are divided until triangles are valid, or ROUNDS times; samples outside of the polygons
-# around faces are replaced at most REFILLS times.
+# Edges are divided until triangles are valid, or ROUNDS times; vertices outside of the polygons
+# around faces are replaced in at most REFILLS rounds.
 ROUNDS, REFILLS = 15, 8
 # If a mesh has faults, larger counts are tried: each MORE times the one before, up to MANY times
 # the least count of the edges. The error names the first count whose mesh has no faults.
@@ -254,8 +254,8 @@ class Corners:
         """Return unit normals (T, 3, 3) at the corners of triangles.
 
         If the face has no normal at a corner, because a parameter line is collapsed to a point, the
-        normal is taken inside the triangle: half-way along the parameter of that line, and close to
-        the corner along the other parameter.
+        normal is taken inside the triangle: midway between the other two corners in the parameter
+        of that line, and close to the corner in the other parameter.
         """
         uv, found = self.known.uv, self.known.normals[triangles]
         rows, corner = np.nonzero(~found.any(axis=2))
@@ -289,7 +289,7 @@ class Meshing:
     def of(
         cls, whole: PartSpace, count: int, failed: dict[int, str], spaced: type[Spacing]
     ) -> Meshing:
-        """Return the start of a mesh of those pieces of a space that have not failed."""
+        """Return the start of a mesh of the pieces of a space that have not failed."""
         pieces = tuple(x for x in whole.pieces if x.face.index not in failed)
         if not pieces:
             reason = next(iter(failed.values()))
@@ -423,7 +423,7 @@ class Meshing:
         return mesh
 
     def _cover(self, sampled: SampledEdges, borders: list[FaceBorder]) -> Cover | None:
-        """Return the cover of faces by vertices: those on edges are given, interior ones are added.
+        """Cover faces by vertices: vertices on edges are given, interior vertices are added.
 
         Returns None if all faces are ruled, and have no interior samples.
         """

@@ -1,4 +1,4 @@
-"""The space of those points of a part that a probe can reach, and the weights of samples."""
+"""The space of the points of a part that a probe can reach, and the weights of samples."""
 
 import itertools
 import math
@@ -54,7 +54,7 @@ def _conditions(part: Part, reach: Reach) -> list[Condition]:
 
 
 def conditions_of(self: GaussMap, reach: Reach) -> list[Condition]:
-    """Return the conditions that a reach sets on points of a surface, besides those on normals."""
+    """Return the conditions that a reach sets on points of a surface, not those on normals."""
     found, surface = list[Condition | None](), self.surface
     if reach._from_edges is not None:
         lines = [y for x in on_grids(self._fitted) for y in lines_of(x)]
@@ -93,8 +93,8 @@ def borders_of(part: Part) -> list[Segments]:
 def with_edges(part: Part) -> list[Segments]:
     """Return the boundary polygons of all faces, and the curves of the sides of all edges.
 
-    Polygons deviate from the curves of the file, to the inside of a face. Of two sides that have
-    the same points, the one with the smaller error is returned.
+    Polygons deviate from the curves of the file, towards the inside of a face. Of two sides that
+    have the same points, the one with the smaller error is returned.
     """
     found = boundaries_of(part)
     for best, *others in _by_edge(part):

@@ -24,7 +24,7 @@ NO_AREA = "its area is zero"
 
 
 class Kind(NamedTuple):
-    """A kind of face: how many numbers it has (see `saving`), and the indices of the lengths in it.
+    """A kind of face: how many numbers it has (see `saving`), and which of them are lengths.
 
     `u` and `v` say whether these parameters are lengths, angles, or neither.
     """

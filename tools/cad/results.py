@@ -39,8 +39,8 @@ def space_of(
     """Return the space of a part, or of its points in a `reach`; SurfaceError if it is empty.
 
     For whole parts, the pieces are cached, but without rasters of their boundaries, which are
-    large. The first cells are cached for each target density, except for powers of K, which may be
-    many. `reach` must contain its conditions on points of the part already; `reached` puts them
+    large. The initial cells are cached for each target density, except for powers of |K|, which may
+    be many. `reach` must contain its conditions on points of the part already; `reached` puts them
     there.
     """
     target = target or TargetDensity(floor=1.0)

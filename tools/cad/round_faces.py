@@ -31,10 +31,10 @@ ROUND = ("plane", "cylinder", "cone", "sphere", "torus")
 TURN = 2.0 * math.pi
 EPS = 2.0**-52
 # The error of angles of Mᵀ n is at most this times the condition number of M: products of three
-# terms, roots and inverse functions of the C library have a few roundings each.
+# terms, roots and inverse trigonometric functions of the C library have a few roundings each.
 ANGLE_ERROR = 16.0 * EPS
-# Normals n are rejected first, before angles are computed, if they are far from those of a plane
-# with normal p, n·p ≤ 1 − NEAR, or from those of a cylinder with axis a, |n·a| > NEAR.
+# Before angles are computed, normals n are rejected if they are far from the normal p of a plane,
+# n·p ≤ 1 − NEAR, or from the normals of a cylinder with axis a, |n·a| > NEAR.
 NEAR = 1e-6
 CURVE, OPEN_BOX = KINDS.index("curve"), KINDS.index("open")
 
@@ -176,7 +176,7 @@ class RoundFace:
         if self.kind == "sphere":
             return self._at_angles(own, 1.0).places(1.0)
         sides = [math.copysign(1.0, major * minor)] if abs(major) > abs(minor) else [1.0, -1.0]
-        for side, sign in itertools.product(sides, (1.0, -1.0)):  # signs of ρ r and cos v
+        for side, sign in itertools.product(sides, (1.0, -1.0)):  # signs of q and cos v
             part = self._at_angles(side * own, sign)
             sizes = side * python_function(torus_normal)(major, minor, np.cos(part.v))
             noise = 4.0 * self.error * (abs(major) + abs(minor)) * abs(minor)

@@ -19,13 +19,14 @@ numbers (k,), number_starts (S + 1,) int64
 net_degrees (N, 2) int64, net_shapes (N, 2) int64
     The degrees p, q and numbers m, n of control points; q = 0 and n = 1 for a curve.
 knots (k,), knot_starts (N + 1,) int64
-    m + p + 1 knots along u and, if it is no curve, n + q + 1 along v.
+    m + p + 1 knots along u and, if it is not a curve, n + q + 1 along v.
 net_points (k, 4), net_point_starts (N + 1,) int64
     m n control points, v runs faster; not multiplied by the weight, the fourth number.
 loop_points (k, 2), loop_point_starts (L + 1,) int64, face_loops (F + 1,) int64
     The loops of face i are face_loops[i] to face_loops[i + 1] − 1, closed polygons in u and v; the
-    first point is not repeated. A point is inside by the even-odd rule over all loops of a face, in
-    any turn; loops run along seams, so that u and v are not taken modulo the periods.
+    first point is not repeated. A point is inside if it, or a copy of it shifted by whole periods,
+    is inside by the even-odd rule over all loops of a face. Loops run along seams; their u and v
+    are not taken modulo the periods.
 vertices (V, 3), edge_vertices (E, 2) int64, edge_degenerate (E,) bool
     The points at the ends of edges; for each edge, the indices of its first and last vertex, −1 if
     unknown; whether the edge is collapsed to a point, as at a pole.
@@ -76,8 +77,8 @@ SUFFIXES = (".npz",)
 MOST_BYTES = 4 << 30
 Arrays = dict[str, NDArray[Any]]
 
-# For each array, the letter of its type and its shape. Equal letters are equal lengths. "S:K"
-# is the length S + 1 of indices: S runs begin there, and the last index is K, the number of rows.
+# For each array, the letter of its type and its shape. Equal letters are equal lengths. "S:K" is
+# the length S + 1 of the indices at which S runs start; the last index is K, the number of rows.
 SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "about": ("B", ("A",)),
     "reversed": ("?", ("F",)),
@@ -174,7 +175,8 @@ def about_of(arrays: Arrays) -> dict[str, Any]:
 def checked_arrays(arrays: Arrays) -> tuple[Arrays, dict[str, Any]]:
     """Return the arrays of a part, checked, and the contents of `about`; UnusableError if invalid.
 
-    A face whose numbers are not finite has failed, and gets a reason; the other faces are kept.
+    A face with numbers that are not finite or out of range has failed, and gets a reason; the other
+    faces are kept.
     """
     about = about_of(arrays)
     if not isinstance(about, dict) or about.get("format") != FORMAT:
@@ -257,7 +259,10 @@ def _check_surfaces(arrays: Arrays) -> None:
 
 
 def _check_nets(arrays: Arrays) -> None:
-    """Check that each NURBS has the knots and control points of its degrees and shape."""
+    """Check that the numbers of knots and control points of each NURBS match its degrees and shape.
+
+    Also check the range of the degrees and numbers.
+    """
     degrees, shapes = arrays["net_degrees"], arrays["net_shapes"]
     curves = degrees[:, 1] == 0
     _require(_within(degrees[:, 0], 1, MOST_DEGREE + 1), "net_degrees")

@@ -54,7 +54,7 @@ def select(
     color : str or (3,) array_like, optional
         The colour: "#ff8000", or red, green and blue from 0 to 1.
     index : array_like of int, optional
-        Indices in `faces`, each of them once, in any order.
+        Indices in `faces`, in any order; repeated indices count once.
     normal : ((3,) array_like, float), optional
         A direction (not 0), and an angle in degrees: all normals of the face, checked on a grid
         inside and along its boundary, are within this angle of the direction.
@@ -161,7 +161,7 @@ def _facing(part: Part, normal: Axis, asked: Flags) -> Flags:
 
 
 def _normals(piece: FacePiece) -> Array:
-    """Return unit normals (k, 3) of a face: in its boxes, at their corners, and on its loops."""
+    """Return unit normals (k, 3) of a face: at centres and corners of its boxes, on its loops."""
     u0, v0, u1, v1 = piece.boxes.T
     middle = np.stack([u0 + u1, v0 + v1], axis=1) / 2.0
     corners = [np.stack(x, axis=1) for x in ((u0, v0), (u1, v0), (u0, v1), (u1, v1))]

@@ -1,4 +1,4 @@
-"""Shells: connected faces whose normals are consistent, and point out of solids into cavities."""
+"""Shells: connected faces with consistent normals, which point out of solids and into cavities."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from .sewing import Border, Sewn
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-# A shell counts as inside another shell if at least the fraction INSIDE of its points is, of about
-# PROBES points that are tested.
+# About PROBES points of a shell are tested; it counts as inside another shell if at least the
+# fraction INSIDE of these points is.
 PROBES, INSIDE = 100, 0.9
 
 

@@ -1,9 +1,8 @@
 """Points with given normals on edges where faces meet smoothly: only one face keeps each point.
 
-This is the face of lowest index; of two points on the seam of a face, the first one is kept.
-Likewise, only one face keeps a component, a curve or region of
-points with one normal, that extends over several faces; points of other faces at the ends of the
-component are left out.
+The face of lowest index keeps it; of two points on the seam of a face, the first one is kept.
+Likewise, only one face keeps a component, a curve or region of constant normal, that extends over
+several faces; points of other faces at the ends of the component are left out.
 """
 
 from dataclasses import replace
@@ -89,7 +88,7 @@ def each_once(space: PartSpace, given: Given) -> Given:
 
 
 def _kept(given: Given, keep: Flags) -> list[PieceSamples]:
-    """Return some of the samples, flags (N,)."""
+    """Return the samples that `keep` (N,) marks."""
     ends = np.cumsum([len(x.samples) for x in given.found])[:-1]
     parts = np.split(keep, ends) if given.found else ()
     return [
@@ -99,12 +98,15 @@ def _kept(given: Given, keep: Flags) -> list[PieceSamples]:
 
 
 def _reach(gap: Array | float, radius: Array, size: float) -> Array:
-    """Return the distance over which normals change by twice a gap, SAME to FAR of the size."""
+    """Return the distance over which normals change by twice a gap.
+
+    It is at least SAME and at most FAR times the size.
+    """
     return np.fmin(np.maximum(2.0 * gap * radius, SAME * size), FAR * size)
 
 
 def _with_gaps(space: PartSpace, given: Given, gaps: EdgeGaps | None) -> tuple[Given, Flags]:
-    """Return points with those of edges with gaps, and which of them are distinct from others.
+    """Add the points of edges with gaps; also return a mask of points known to be distinct.
 
     Points that the search beyond the sides of a face found in a gap are left out. Normals beside
     corners are undecided.

@@ -1,7 +1,7 @@
 """A CAD file before Open CASCADE reads it: its content, and the part files of an assembly.
 
-Open CASCADE silently ignores part files that are missing or truncated. So all of them are checked
-and copied to one folder, and references are renamed.
+Open CASCADE silently ignores part files that are missing or truncated. Therefore all part files are
+checked and copied to one folder, and references to them are renamed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ASSIGNED = b"APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT"
 STEP_SUFFIXES = (".step", ".stp", ".p21")
 TEXT = re.compile(rb"'((?:[^']|'')*)'")
 REFERENCE = re.compile(rb"#(\d+)")
-# Escape sequences of characters in STEP strings (ISO 10303-21, 6.4.3).
+# Some of the escape sequences of characters in STEP strings (ISO 10303-21): \X2\, \X\, \\ and ''.
 ESCAPED = re.compile(r"\\X2\\((?:[0-9A-F]{4})+)\\X0\\|\\X\\([0-9A-F]{2})|\\\\|''", re.IGNORECASE)
 # The largest number of unreadable part files that a sentence names.
 MOST_NAMED = 3
@@ -134,7 +134,7 @@ class Source:
 
 
 def prepared(path: Path, folder: Path) -> Source:
-    """Check a file, copy its part files, and return what Open CASCADE can read of it.
+    """Check a file, copy its part files, and return the source that Open CASCADE reads.
 
     Raises UnusableError with the reason if the file is unusable.
     """

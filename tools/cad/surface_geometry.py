@@ -90,7 +90,7 @@ def _profile(function: object) -> tuple[str, tuple[float, ...]] | None:
 def _round(kind: str, sizes: Sequence[float], moved: Moved) -> tuple[Geometry, Array] | None:
     """Return a cylinder, cone, sphere or torus after its motion, and the matrix for parameters.
 
-    None means that the motion makes it another surface.
+    None means that the moved surface is of none of these kinds.
     """
     map_ = moved.map
     if moved.turned:  # u is mapped to the sum of the ends of its interval, minus u

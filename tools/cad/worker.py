@@ -1,6 +1,6 @@
 """The process that reads a CAD file: `python -m gaussmap.tools.cad.worker`.
 
-It imports Open CASCADE and NumPy, and never Numba. Its standard output is closed, since readers
+It imports Open CASCADE and NumPy, and never Numba. Its standard output is discarded, since readers
 print to it; the results are files in the given folder: `part.npz`, or `error.txt` with a sentence
 that continues "'path' …".
 """

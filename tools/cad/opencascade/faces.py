@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 # equal.
 LEAST_AREA = 1e-12
 # The estimated relative error at which Open CASCADE stops dividing a face. With it, areas agree
-# with closed forms to 1e-6; without it, those of ellipsoids of one face are off by 3e-3.
+# with closed forms to 1e-6; without it, areas of ellipsoids of one face are off by 3e-3.
 PRECISION = 1e-10
 
 

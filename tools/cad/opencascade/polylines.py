@@ -78,7 +78,7 @@ def _divided(
 def _judged(
     left: Array, right: Array, side: float
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_], Array]:
-    """Return into how many parts each piece is to be divided, a mask of corners, and the tips.
+    """Return the number of parts for each piece, a mask of the pieces with a corner, and the tips.
 
     A piece with a corner is replaced by the tangents at its ends, which meet at its tip.
     """

@@ -14,7 +14,7 @@ from OCP.TopLoc import TopLoc_Location
 
 
 def parts_of(shape: Any, kind: Any, avoided: Any = None) -> Iterator[Any]:  # noqa: ANN401
-    """Yield the subshapes of one kind, except those inside subshapes of the kind `avoided`."""
+    """Yield the subshapes of one kind, except inside subshapes of the kind `avoided`."""
     explorer = TopExp_Explorer(shape, kind) if avoided is None else TopExp_Explorer(
         shape, kind, avoided
     )  # fmt: skip
