@@ -51,7 +51,7 @@ class Archive:
 
 @contextmanager
 def archive_of(file: BufferedReader) -> Iterator[Archive]:
-    """Yield the archive in a file; UnusableError if it is none, or would unpack to too much."""
+    """Yield the archive in a file; UnusableError if it is not one, or would unpack to too much."""
     # NumPy would read any other file as a pickle.
     if not zipfile.is_zipfile(file):
         raise UnusableError("is damaged or is no .npz file; write it again.")

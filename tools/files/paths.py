@@ -101,7 +101,7 @@ def written_by_library(path: PathLike) -> Iterator[None]:
 
 
 def checked_path(path: PathLike) -> Path:
-    """Return the argument as a Path; InputError if it is no valid path."""
+    """Return the argument as a Path; InputError if it is not a valid path."""
     try:
         result = Path(path)
     except TypeError:

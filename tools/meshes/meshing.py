@@ -46,7 +46,7 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
 
 
 def _check_folds(samples: Samples, mesh: Triangulated) -> None:
-    """Raise InputError for offsets that are trimmed or folded, and for those of one-sided surfaces.
+    """Raise InputError for an offset that is trimmed or folded, or has a one-sided base surface.
 
     An offset by d changes a principal curvature κ to κ' = κ / (1 + d κ). Therefore 1 + d κ has the
     sign of 1 − d κ' = 1 / (1 + d κ), which is known after the offset.

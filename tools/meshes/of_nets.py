@@ -21,7 +21,7 @@ class Parts(NamedTuple):
     """A division of a triangle into n² equal triangles, whose L corners are at `places` (L, 2).
 
     Places are parameter pairs. The `corners` (3,) of the whole triangle, the points on its `edges`
-    (3, n + 1), and the `triangles` (n², 3) are indices of places, counterclockwise. Edges are
+    (3, n + 1), and the `triangles` (n², 3) are indices of `places`, counterclockwise. Edges are
     ordered as in `runtime.spline.joints`.
     """
 

@@ -15,8 +15,8 @@ Indices = NDArray[np.int64]
 class Texture(NamedTuple):
     """Texture coordinates (K, 2), and for each corner of the triangles their index (T, 3).
 
-    The first rows of the coordinates are those of all vertices. Further rows are for triangles that
-    cross a seam, or have a corner at a pole.
+    The first rows of the coordinates belong to the vertices, in order. Further rows are for
+    triangles that cross a seam, or have a corner at a pole.
     """
 
     places: Array

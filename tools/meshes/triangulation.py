@@ -96,7 +96,7 @@ def _attempts(has_copies: bool, distance: float) -> list[tuple[float, float]]:
 
 
 def _curved(positions: Array, lengths: Array) -> Array:
-    """Return positions, with those on a side of the unit square moved outwards, to a parabola.
+    """Return positions; on the sides of the unit square, they are moved outwards to a parabola.
 
     After u and v are multiplied by `lengths` (2,), the four parabolas have equal heights.
     """
@@ -212,8 +212,8 @@ def _in_strip(
 ) -> Triangulation:  # fmt: skip
     """Triangulate a strip of the domain with a margin; return the triangles of the strip.
 
-    It is one of equal strips along u. Its triangles are those whose corner of the smallest index is
-    an original in the strip, not a copy.
+    It is one of equal strips along u. A triangle belongs to the strip if its corner of the smallest
+    index is an original in the strip, not a copy.
     """
     number, strips, margin = strip
     along = points[:, 0] * strips - number

@@ -19,7 +19,7 @@ OVERLAP = 1e-9
 class Tree(NamedTuple):
     """Triangles in a complete binary tree.
 
-    corners (leaves · size, 3, 3): those of leaf k begin with triangle k · size.
+    corners (leaves · size, 3, 3): the triangles; leaf k begins with triangle k · size.
     boxes (2 · leaves, 2, 3): smallest and largest coordinates of nodes. Node 1 is the root, the
     children of node k are 2 k and 2 k + 1, and leaf k is node leaves + k; row 0 is not used.
     """
