@@ -10,9 +10,9 @@ from ...runtime.base.extras import from_extra
 
 Array = NDArray[np.float64]
 
-# The latitude beyond which UPS replaces UTM, and the EPSG codes of the two zones of UPS, north and
-# south.
-LAST_LATITUDE, POLAR = 84.0, (32661, 32761)
+# UTM is for latitudes from SOUTH to NORTH, UPS for those beyond; POLAR are the EPSG codes of the two
+# zones of UPS, north and south.
+SOUTH, NORTH, POLAR = -80.0, 84.0, (32661, 32761)
 # The largest range of longitude, in degrees, for one zone of UTM: in a wider range, the scale is
 # wrong by a percent.
 WIDEST_ZONE = 12.0
@@ -54,7 +54,7 @@ def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any: 
     if np.abs(y).max() > 90.0:
         raise InputError(f"{name} has latitudes beyond 90 degrees; are x and y exchanged?")
     south = latitude < 0.0
-    if abs(latitude) > LAST_LATITUDE:
+    if not SOUTH <= latitude <= NORTH:
         number = POLAR[south]
     elif float(np.ptp(x)) > WIDEST_ZONE:
         raise InputError(

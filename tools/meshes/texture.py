@@ -55,7 +55,9 @@ def split_at_seams(
     uv: Array, triangles: Indices, domain: Domain | None, boundary: Boundary | None
 ) -> Texture:
     """Return the texture coordinates of a mesh, several for a vertex at a seam."""
-    places = uv if domain is None else _scaled(uv, domain)
+    if domain is None or boundary is None:
+        return Texture(uv, triangles)
+    places = _scaled(uv, domain)
     found = corner_places(uv, triangles, domain, boundary)
     moved = (found != places[triangles]).any(axis=2)
     rows = np.column_stack([triangles[moved], found[moved]])

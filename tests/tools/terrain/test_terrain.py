@@ -82,7 +82,7 @@ def test_points_are_where_rasterio_says(tmp_path: Path, transform: Affine, kind:
 
 def test_degrees_become_the_zone_of_utm(tmp_path: Path) -> None:
     for longitude, latitude, number in (
-        (-84.4, 36.7, 32616), (151.2, -33.9, 32756), (10.0, 85.0, 32661)
+        (-84.4, 36.7, 32616), (151.2, -33.9, 32756), (10.0, 85.0, 32661), (10.0, -81.0, 32761)
     ):  # fmt: skip
         place = Affine(1e-3, 0.0, longitude, 0.0, -1e-3, latitude)
         path = write(tmp_path / "dem.tif", transform=place, crs="EPSG:4326")
