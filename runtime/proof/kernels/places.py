@@ -100,7 +100,6 @@ class Boxes(NamedTuple):
     fates: NDArray[np.int64]
     pairs: NDArray[np.float64]
     numbers: NDArray[np.int64]
-    levels: NDArray[np.int64]
     ends: NDArray[np.float64]
     blocks: NDArray[np.float64]
     path: NDArray[np.float64]
@@ -114,8 +113,8 @@ class Boxes(NamedTuple):
             np.empty((most, BOX_COLUMNS)), np.empty((most, BOX_COLUMNS)),
             np.empty((most, BOX_COLUMNS)), np.empty((most, 4)),
             np.empty(most, np.int64), np.empty(most, np.int64), np.zeros(ROWS * LANES),
-            np.zeros(LANES, np.int64), np.array(FOLDS), np.empty((2, PARTS + 1)),
-            np.empty((2, PARTS + 1)), np.empty(PATH), CellBounds.new(LANES),
+            np.zeros(LANES, np.int64), np.empty((2, PARTS + 1)), np.empty((2, PARTS + 1)),
+            np.empty(PATH), CellBounds.new(LANES),
         )  # fmt: skip
 
 
@@ -428,7 +427,7 @@ def settled(forms, noise, size_s, size_t, s, t):
 @loop
 def bisect(tape, work, index, boxes, count, domain, number, n, answers):
     """Find the solutions for a normal in whole cells; return whether there was room."""
-    fold, on_curve, growing = 0, 0, count > MOST
+    on_curve, growing = 0, count > MOST
     for level in range(DEEPEST + 1):
         if count > MANY and growing:
             before = on_curve
@@ -441,8 +440,7 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
         if following < 0:
             return False
         rounding = level >= FINE and following > AREA * count
-        if following > 0 and (rounding or level == boxes.levels[fold]):
-            fold += level == boxes.levels[fold]
+        if following > 0 and (rounding or level in FOLDS):
             following = decide_clusters(
                 tape, work, index, boxes, following, domain, number, n, answers
             )
