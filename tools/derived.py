@@ -146,15 +146,15 @@ def mesh(
         In degrees. Triangles whose normals deviate by more from a normal at one of their corners
         are left out; use this for samples of only a part of the surface. Not for CAD parts.
     prefer : {"shape", "normals"}, default "shape"
-        - "shape": triangles are Delaunay on the surface, and have angles as large as the
-          samples allow. A sample is left out if it is so close to others that the smallest angle of
-          a triangle stays below 5°. Then further samples are left out, until the smallest angles of
-          95 % of the triangles are at least 25°, or a tenth of the remaining samples has been left
-          out. `Mesh.left_out` is the number of all these samples. They lie where distances change
-          by a factor of two from one sample to the next, since triangles there cannot have large
-          angles. With a count and ``density="balanced"`` on a closed surface, most narrow bends
-          cost no samples, and very sharp ones up to 8 % of the count. Samples on a grid are never
-          left out, even if its cells are long.
+        - "shape": triangles are Delaunay on the surface, and have angles as large as the samples
+          allow. A sample is left out if it is so close to others that the smallest angle of a
+          triangle stays below 5°. Then further samples are left out, at most a tenth of the
+          remaining ones, until the smallest angles of 95 % of the triangles are at least 25°.
+          `Mesh.left_out` includes all these samples. They lie where distances change by a factor of
+          two from one sample to the next, since triangles there cannot have large angles. With a
+          count and ``density="balanced"`` on a closed surface, most narrow bends cost no samples,
+          and very sharp ones up to 8 % of the count. Samples on a grid are never left out, even if
+          its cells are long.
         - "normals": triangles deviate from the normals at their corners as little as the
           samples allow. They are long and thin where the surface is curved in one direction only. A
           sample is left out where a triangle would have no area. On a CAD part, planes, cylinders
@@ -368,11 +368,11 @@ def unobstructed(
     ------
     InputError
         Unless the distance is positive, and the mesh closed with outward normals; for an object
-        that is no obstacle; and as `mesh`.
+        that cannot be an obstacle; and as `mesh`.
     MissingFieldError
         Unless the samples have the fields points and normals.
     MissingExtraError
-        Of a part, without the extra `mesh`.
+        For a part, without the extra `mesh`.
 
     See Also
     --------
@@ -434,7 +434,7 @@ def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
     Raises
     ------
     InputError
-        For an object that is no mesh, and as `mesh`.
+        For an object that is not a mesh, and as `mesh`.
     MissingFieldError
         Unless the samples have the fields points, normals and uv.
 

@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 # The length of an arc is about the distance divided by ARCS_A_DISTANCE; there are about MOST_ARCS
 # arcs at most.
 ARCS_A_DISTANCE, MOST_ARCS = 16.0, 100_000
-# The length of a segment is measured by CHORDS chords. An arc is within BULGE times the largest
-# distance of its ends from its middle.
+# The length of a segment is measured by CHORDS chords. Let r be the largest distance between the
+# middle and an end of an arc: each arc is assumed to be within BULGE r of its middle.
 CHORDS, BULGE = 8, 1.1
-# The largest number of steps of Newton's method, which takes a step along the tangent instead where
-# the squared distance is not convex enough. The steps end when they are shorter than FINE times the
-# distance; the error of a distance is of second order in the last step.
+# Newton's method takes at most STEPS steps. A Gauss-Newton step replaces a Newton step if half the
+# second derivative of the squared distance is at most CONVEX |dx/dt|². The steps end when they are
+# shorter than FINE times the distance; the error of a distance is of second order in the last step.
 STEPS, CONVEX, FINE = 8, 0.1, 1e-8
 # Distances are compared up to this multiple of the largest coordinate, for rounding errors.
 ROUNDING = 32.0 * np.finfo(np.float64).eps

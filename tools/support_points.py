@@ -1,8 +1,8 @@
 """Support points: the farthest points of a surface in given directions.
 
-A farthest point has the direction or its opposite as its normal, or lies on a boundary.
-`GaussMap.points` finds points with normals, with a proof if possible; on a boundary, n·x is
-maximized along short segments. Six support points give the bounding box of a surface.
+A farthest point in the direction n has the normal n or −n, or lies on a boundary. `GaussMap.points`
+finds all points with these normals, with a proof if possible; on a boundary, n·x is maximized along
+short segments. Six support points give the bounding box of a surface.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ from .meshes.places import on_side, uv_at, wrapped
 
 # Sides of the domain are cut into this number of segments for each cell.
 STEPS_A_CELL = 2
-# A set of directions is halved until it has at most PAIRS pairs of a direction and a segment that
-# may be farthest in this direction.
+# A set of directions is halved until it is a single direction, or has at most PAIRS pairs of a
+# direction and a segment that may be farthest in this direction.
 PAIRS = 1 << 13
 # The numbers of steps of Newton's method, and of bisection where the boundary of a trim crosses a
 # segment.
@@ -65,7 +65,8 @@ class SupportPoints(NamedTuple):
         with the normals n and −n are proved to be known; in undecided boxes, they include the last
         step of Newton's method. On edges of parts, they include the estimated deviations of cubics
         from the curves of the file. Without a proof, they follow from the measured distance of the
-        spline from the surface (`Misfit.distance`); for faces of a part they are then infinite.
+        spline from the surface (`Misfit.distance`). If a face of a part has no proof, all of them
+        are infinite.
     uv : (S, 2) float64 array
         The parameters of the points; NaN on splines of nets.
     face_index : (S,) int64 array
@@ -288,8 +289,8 @@ class NetEdges:
 class Curves:
     """M segments of one or more surfaces, with the points and tangents (M, 2, 3) at both ends.
 
-    A segment is given by the index of its part in `parts` and its row there. Each segment is within
-    a distance `reach` (M,) of its start, and the boundary within `errors` (M,) of the segment.
+    A segment is given by the index of its part in `parts` and its row there. The boundary is within
+    `errors` (M,) of the segments, and is assumed to be within `reach` (M,) of their starts.
     """
 
     parts: Sequence[Segments | NetEdges]
@@ -418,7 +419,7 @@ def _add_highest(
         t[some], steps[some] = moved, np.abs(slope * step)
     uv, points, _, _ = part.at(rows, t)
     off = part.errors[rows] if isinstance(part.errors, np.ndarray) else part.errors
-    if part.bends is not None:  # the error of a cubic vanishes at its ends, at least as fast
+    if part.bends is not None:  # cubics, whose errors are 0 at their ends and largest at t = 1/2
         off = off * 4.0 * t * (1.0 - t)
     bounds = np.einsum("kx,kx->k", points, n) + off
     if isinstance(part, Segments) and part.domain is not None:

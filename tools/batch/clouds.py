@@ -23,8 +23,8 @@ class Clouds:
         The folder of the data set.
     settings : Settings
         The settings of the data set.
-    parts : (P,) int64 array
-        The indices of the parts that have samples.
+    parts : (C,) int64 array
+        The indices of the C parts that have samples.
     points : int
         The number of points of each part.
     types : dict of str to dtype
@@ -32,7 +32,7 @@ class Clouds:
     seed : tuple of int or None
         The seed for drawing points; without it, the first points are taken.
     labels : (P,) array or None
-        A number for each part of the data set.
+        A number for each of the P parts of the data set, failed ones included.
 
     """
 

@@ -23,7 +23,8 @@ from .inputs import Input
 from .plan import Plan
 from .workers import Tally, Worker, sampled
 
-# The number of times that a task may be given to another worker after its worker was lost.
+# The number of times that Dask repeats a task that raises an exception. The number of workers that
+# a task may lose is Dask's setting `distributed.scheduler.allowed-failures`.
 LOST = 10
 # Seconds that a scheduler, or its first worker, may take to answer.
 PATIENCE = 30

@@ -68,9 +68,9 @@ class Dataset:
     """The samples of many parts, in a folder; `open_dataset` opens it.
 
     Parts are numbered as in the list of `sample_many`, from 0: ``len(dataset)`` is the number of
-    all parts, failed ones included, ``dataset[part]`` are the samples of one part, as `samples`
-    returns them, and ``dataset[-1]`` are those of the last part. Iteration goes over the samples of
-    all parts that did not fail.
+    all parts, failed ones included (during a run, of finished parts), ``dataset[part]`` are the
+    samples of one part, as `samples` returns them, and ``dataset[-1]`` are those of the last part.
+    Iteration goes over the samples of all parts that did not fail.
 
     Attributes
     ----------
@@ -286,7 +286,8 @@ class Dataset:
 
         Notes
         -----
-        The points drawn from a part depend on the seed and the part only.
+        The points drawn from a part depend only on the seed, the index of the part, the number of
+        its samples, and `points`.
 
         Examples
         --------

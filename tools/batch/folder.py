@@ -5,6 +5,7 @@
     manifest.parquet       the rows of all parts, when a run has ended
     normals.npy            the prescribed normals, if there are any
     partial/               files that are being written; it exists only during a run
+    .lock                  an empty file, which a run locks
 
 A part is done when its file in points/ exists.
 """

@@ -124,8 +124,8 @@ def sample_many(
         files, saved parts, GeoTIFFs, and points (m, n, 3) in .npy and .npz files (FILE.npz:NAME if
         the file holds several arrays).
     count, normals, angle, coverage, density, cells, on, fields, dtype, threads : optional
-        As in `sample`. With `out`, the default fields are all but indices, and each process has one
-        thread.
+        As in `sample`. With `out`, the default fields are points, normals, uv, support and both
+        curvatures, each process has one thread, and `threads` cannot be given.
     reach : (axis, angle), optional
         As in `sample`.
     progress : bool, default True
@@ -141,7 +141,7 @@ def sample_many(
         The address of a Dask scheduler, or a client: its workers sample the parts, and must see the
         folder by the same path. The extra `cluster` installs Dask.
     time_limit : float, default 600.0
-        The longest time for a part, in seconds.
+        The time limit of a part, in seconds. A part that fails is tried twice.
     memory_limit : float, optional
         The memory limit of a process, in GiB (not on macOS and Windows); by default the workers
         share nine tenths of this machine's memory.
@@ -167,8 +167,9 @@ def sample_many(
     Raises
     ------
     InputError
-        For arguments with which no surface can be sampled, and if the folder holds a data set with
-        other settings.
+        For arguments with which no surface can be sampled; if `threads` or `on_error` is given with
+        `out`, or `workers`, `scheduler` or `memory_limit` without it; and if the folder holds a
+        data set with other settings.
     FileError
         If the folder holds other files or cannot be written to, if another run writes to it, or if
         Dask's scheduler or its workers cannot be used.
@@ -188,7 +189,8 @@ def sample_many(
     on one core. With `out`, each process samples one surface on one core, which is faster for many
     surfaces.
 
-    A part is identified by its content: the bytes of its file, or points of its surface.
+    A resumed run samples a part again if its content has changed: the bytes of its file, or points
+    of its surface.
 
     Examples
     --------

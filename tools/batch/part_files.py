@@ -99,7 +99,7 @@ def write_part(
 
 
 def write_manifest(folder: Path, settings: Settings, parts: Iterable[int]) -> None:
-    """Write the manifest of these parts, all of which have files."""
+    """Write the manifest of the given parts, all of which have files."""
     rows = rows_of(folder, settings, parts)
     with (
         replaced(folder, folder / MANIFEST) as temporary,

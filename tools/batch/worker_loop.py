@@ -134,7 +134,7 @@ def _source(task: Task) -> tuple[Any, dict[str, str]]:
     if task.before is not None and known["content"] == task.before.content:
         return None, known
     named = replace(task.plan.named, surface=path, quiet=True)
-    if is_part_file(path):  # neither of these has cells
+    if is_part_file(path):  # the tolerance is for the splines of surfaces only
         plan = task.plan
         named = replace(named, tolerance=None, time_limit=plan.seconds, memory_limit=plan.memory)
     return surface_of(named), known

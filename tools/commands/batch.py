@@ -61,9 +61,9 @@ def run(options: SimpleNamespace) -> None:
 
 
 def _parts_of(options: SimpleNamespace) -> tuple[list[Source], Named]:
-    """Return the parts, surfaces and names of files, and the options for reading these files."""
+    """Return the parts (surfaces, and names of files), and the options for reading the files."""
     none = dict.fromkeys(("formula", "domain", "time_limit", "memory_limit"))
-    own = none | {"quiet": False}  # data sets do not depend on the number of threads
+    own = none | {"quiet": False}  # the settings of a data set do not depend on --quiet
     named = Named.of(SimpleNamespace(**vars(options) | own))
     of_formulas = [
         surface_of(replace(named, formula=formula, domain=options.domain))

@@ -41,7 +41,7 @@ def main(arguments: Sequence[str] | None = None, ready: Callable[[], object] = b
         console.fail(str(error))
     except MemoryError:
         console.fail("there is not enough memory for this; use fewer samples or cells.")
-    except OSError as error:  # other files handle this where they are read or written
+    except OSError as error:  # errors of other files are handled where these are read or written
         console.give_up_output()
         console.fail(f"standard output cannot be written: {error.strerror or error}.")
     except KeyboardInterrupt:

@@ -28,11 +28,11 @@ class Formulas(Mapping[str, "Formula"]):
         return self._formulas[known_name(name, tuple(self), "formula", "gaussmap formulas")]
 
     def __contains__(self, name: object) -> bool:
-        """Return whether there is a formula of that name."""
+        """Return whether a formula has this name."""
         return isinstance(name, str) and name in self._formulas
 
     def get(self, name: str, default: Any = None) -> Any:  # noqa: ANN401 - as in Mapping
-        """Return a formula, or `default` if there is none of that name."""
+        """Return a formula, or `default` if no formula has this name."""
         return self._formulas.get(name, default)
 
     def __iter__(self) -> Iterator[str]:

@@ -120,7 +120,7 @@ class Command(click.Command):
                 formatter.write_dl([(group, " ".join(names)) for group, names in named.items()])
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the examples; few of them in the brief help."""
+        """Write the epilog; in the brief help, the brief one."""
         whole = self.epilog
         self.epilog = self.brief if self._is_brief(ctx) else whole
         super().format_epilog(ctx, formatter)

@@ -20,7 +20,7 @@ def listed(named: Iterable[str], list_file: str | None) -> list[str]:
     A folder stands for the files of known suffixes in the folder and its subfolders, a pattern for
     all files that match it, in the order of their names.
 
-    Raises InputError for a name without files, FileError if a list cannot be read.
+    Raises InputError for a folder or a pattern without files, FileError if a list cannot be read.
     """
     return [part for text in [*named, *_lines(list_file)] for part in _expanded(text)]
 
