@@ -232,7 +232,7 @@ class Curve:
             If the callable raises or returns another shape than (..., 2), values that are not real
             numbers, NaN or infinity.
         InputError
-            If the parameters are no real numbers, or lie outside the domain of a curve that was
+            If the parameters are not real numbers, or lie outside the domain of a curve that was
             given by points.
 
         Examples

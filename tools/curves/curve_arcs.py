@@ -4,7 +4,8 @@ Bounds of x′ and x″ over intervals of the parameter come from the tape of th
 certain if x′ stays within 90° of one direction and x′ × x″ has one sign: the angle of the normal is
 monotone, and the arc has each normal between those at its ends exactly once. Other intervals are
 halved until the normal turns by less than `SMALLEST_TURN` there: around inflections, and where the
-curve is straight. Intervals where x′ may vanish are cusps or singular.
+curve is straight. Intervals where x′ may vanish, as at cusps, are halved until they are shorter
+than `SHORTEST`; they are singular.
 """
 
 from dataclasses import dataclass

@@ -40,8 +40,8 @@ Array = NDArray[np.float64]
 
 # The largest number of attempts to meet `count` by changing the number of normals.
 TRIES = 6
-# Arcs that this many uniform normals would sample do not count as straight, even if fewer normals
-# are used.
+# Which arcs are straight is decided for at least this number of uniform normals, even if fewer are
+# used.
 LEAST_NORMALS = 1_000
 # The curves on which samples may lie.
 PLACES = ("curve", "spline")
@@ -60,7 +60,7 @@ class CurveReport:
     samples : int
         The number of samples.
     pieces : int
-        The number of arcs of the spline.
+        The number of arcs of the spline, or of arcs into which the curve was divided.
     straight_share : float
         The share (0…1) of the length where κ ≈ 0, which has no samples.
     inflections : int
@@ -463,8 +463,8 @@ def _samples(
 def _straight_share(spline: CurveSpline | CurveArcs, normals: int) -> float:
     """Return the share of the length where κ ≈ 0, which has no samples.
 
-    An arc counts as straight if an arc of the same length with constant curvature would get no
-    sample.
+    An arc counts as straight if a curve of the total length, with the mean curvature of the arc,
+    would get less than one sample.
     """
     joints = spline.scale * spline.evaluate(spline.joints)
     lengths = np.hypot(*np.diff(joints, axis=0).T)

@@ -81,7 +81,7 @@ class SupportFunction(ABC):
     """The support function h(n) of a planar curve (paper, Sect. 4.1); made by `of_spline`.
 
     It is the signed distance of the tangent with the normal n from the origin. Several points may
-    have one normal, each on a branch of h. Operations on curves are simple operations on their
+    share a normal, each on a branch of h. Operations on curves are simple operations on their
     support functions: `+` (convolution), `offset`, `translated`, `rotated`, `scaled`, `reversed`.
     They return new objects, which are evaluated lazily. Straight parts of a curve have no branch.
 
@@ -125,7 +125,7 @@ class SupportFunction(ABC):
         Raises
         ------
         InputError
-            For an object that is no curve, and for `pieces` with a spline.
+            For an object that is not a curve, and for `pieces` with a spline.
         SurfaceError
             As `fit`.
 
@@ -347,7 +347,7 @@ class OfSpline(SupportFunction):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sum(SupportFunction):
-    """h₁ + h₂: points and radii of curvature add, for each pair of branches with one normal."""
+    """h₁ + h₂: points and radii of curvature add, for each pair of branches at the same normal."""
 
     first: SupportFunction
     second: SupportFunction

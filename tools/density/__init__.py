@@ -1,1 +1,1 @@
-"""Target densities other than |K|: samples that cover a surface."""
+"""Samples with a target density: at normals of lattices, on grids, and in the gaps between them."""

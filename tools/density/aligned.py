@@ -93,6 +93,8 @@ class AlignedGrid:
     def grid_for(self, most: int, distance: float) -> Grid:
         """Return about the finest grid with at most `most` samples inside the trim.
 
+        If one line in each part of both axes gives more samples, that grid is returned.
+
         Half the diagonal of each cell in space is at most the scaled `distance` if `most` samples
         suffice for that.
         """
@@ -111,7 +113,8 @@ class AlignedGrid:
     def grid(self, steps: Steps, most: int | None) -> Grid:
         """Return the grid whose lines are the given steps apart.
 
-        If `most` is given, steps are scaled for at most that many samples on the whole domain.
+        If `most` is given, steps are scaled for at most that many samples on the whole domain;
+        without a trim, samples between the lines raise their number to `most`.
         """
         lengths = [x.lengths(y) for x, y in zip(self.axes, steps.along, strict=True)]
         if most is None:

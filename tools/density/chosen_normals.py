@@ -20,7 +20,8 @@ ATTEMPTS = 20
 # Later ones vary the density up and down in relative steps of DITHER: with few samples, several
 # appear or vanish together.
 IN_PROPORTION, DITHER = 6, 0.008
-# The largest number of normals per requested sample (a thin Gaussian image has few samples).
+# The largest number of lattice normals per requested sample, for at least 1,000 requested samples:
+# few normals of a lattice around a thin Gaussian image lie in it.
 NORMALS_PER_SAMPLE = 100
 # If points of the spline cannot be moved to the surface, the number of points to be found on the
 # spline is corrected this many times.

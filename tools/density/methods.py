@@ -28,7 +28,7 @@ def progressive(self: Samples, *, progress: bool = False) -> Samples:
     """Return the samples in progressive order: every prefix is well distributed.
 
     The first ones are far apart relative to the local spacing of the samples; the next ones
-    halve the gaps, and so on. A spacing below a thousandth of the median counts as the median.
+    halve the gaps, and so on. The local spacing is at least a thousandth of its median.
 
     Parameters
     ----------

@@ -90,9 +90,10 @@ def _by_count_and_distance(
 
 
 def _grid_of(space: Space, count: int, distance: float) -> Grid:
-    """Return the finest grids with at most `count` samples in all, joined to one grid.
+    """Return about the finest grids with at most `count` samples in total, joined to one grid.
 
-    The count is divided among the pieces.
+    The count is divided among the pieces. There are more samples if one line in each part of both
+    axes of a piece already gives more.
     """
     counts = apportioned(count, space.integrals).tolist()
     grids = (AlignedGrid.of(space, k).grid_for(n, distance) for k, n in enumerate(counts) if n)

@@ -121,7 +121,7 @@ class Space:
 
     @property
     def size(self) -> float:
-        """The diagonal of a box around the first cells, scaled."""
+        """The diagonal of a box around the initial cells, `first`, scaled."""
         points, radii = self.first.rows[:, :3], self.first.numbers[:, [RADIUS]]
         low, high = (points - radii).min(axis=0), (points + radii).max(axis=0)
         return float(np.linalg.norm(high - low))
@@ -256,7 +256,7 @@ class Space:
 
     @property
     def densities(self) -> Array:
-        """The target densities (M,) of the first cells."""
+        """The target densities (M,) of the initial cells, `first`."""
         return np.clip(self.first.rows[:, 6], self.target.floor, self.target.ceiling)
 
     def _with(self, **changes: object) -> Self:
@@ -343,7 +343,7 @@ class Space:
         return merged([cells, self._beside_borders(radius)])
 
     def parts(self, radius: float) -> Indices:
-        """Return the numbers of parts (M, 2), along u and v, into which `cut` cuts the first cells.
+        """Return the numbers of parts (M, 2), along u and v, of the cells `first` in `cut`.
 
         Raises InputError if the parts are too many.
         """
@@ -379,7 +379,7 @@ class Space:
             yield self.evaluated(into_parts(first[rows], parts[rows].astype(np.int64)))
 
     def evaluated(self, cells: Cells, pixels: Indices | None = None) -> Cells:
-        """Return those cells that have a place inside the trim, evaluated."""
+        """Return the cells that have a place inside the trim, evaluated."""
         return self.known(self._inside(cells, self._fewest if pixels is None else pixels))
 
     def halves(self, cells: Cells) -> Cells:
@@ -404,7 +404,7 @@ class Space:
     # --- steps ------------------------------------------------------------------------------------
 
     def _inside(self, cells: Cells, pixels: Indices) -> Cells:
-        """Return those cells that have a place inside the trim, with this place."""
+        """Return the cells that have a place inside the trim, with this place."""
         return placed(self.trims, sifted(self.trims, cells.sorted(), pixels)[0])[0]
 
     def _beside_borders(self, step: float, turn: float = math.inf) -> Cells:
