@@ -56,7 +56,7 @@ class BoundaryArc:
         Returns
         -------
         (count, 3) float64 array
-            The normals. At a singular end, where N vanishes, the limit of the normals is returned.
+            The normals. At a singular end, their limit is returned.
             The result is NaN if the whole arc has no normals, and at a singular point inside the
             arc, where its `parts` end.
 

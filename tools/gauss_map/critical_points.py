@@ -119,7 +119,8 @@ def _eigenvalues(hessian: Array) -> Array:
 def _half_distance_is_less(size: float | Array, K: Array, hessian: Array) -> Flags:
     """Return a mask of the critical points at which two curves K = 0 are less than 2 `size` apart.
 
-    At a saddle, the curves are the branches of the hyperbola 2 K − λ x² + μ y² = 0.
+    At a saddle, the curves are the branches of the hyperbola 2 K + λ x² + μ y² = 0, where λ < 0 < μ
+    are the eigenvalues of the Hessian.
     """
     low, high = _eigenvalues(hessian * np.multiply.outer(size, size))
     return 2.0 * np.abs(K) <= np.where(K > 0.0, -low, high)

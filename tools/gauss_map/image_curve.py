@@ -23,11 +23,11 @@ from .polylines import distances, refined
 OfPlaces = Callable[[Array], Array]
 # Curves whose ends are closer than this, relative to their size, count as closed.
 CLOSED = 1e-6
-# The point of a curve whose normal is nearest to a given one is searched in ROUNDS rounds. Each
-# round tests PLACES points: first one segment to both sides of the nearest one of normals that are
-# at most APART radians apart on the chords of the image, then between
-# the two neighbours of the nearest point of the round before. Angles are measured to the chords
-# between the points of the last round.
+# The point of a curve whose normal is nearest to a given one is searched in ROUNDS rounds of PLACES
+# points. The middle of the first round is the nearest of some points on the chords of the image, at
+# most APART radians apart; the round extends by one segment to both sides. Each later round lies
+# between the two neighbours of the nearest point of the round before. Angles are measured to the
+# chords between the points of the last round.
 PLACES, ROUNDS, APART = 9, 5, 1e-3
 
 

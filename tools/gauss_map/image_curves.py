@@ -48,7 +48,8 @@ def folds(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve, ...]:
     Returns
     -------
     tuple of ImageCurve
-        The curves, with a vertex at each cusp. On a spline, folds run along edges of patches.
+        The curves, with a vertex at each cusp. On a spline, folds are parabolic lines of patches,
+        and edges of patches across which K changes its sign.
 
     Raises
     ------
@@ -179,9 +180,9 @@ def _borders(geometry: OnSpline, tolerance: float) -> Iterator[Traced]:
 
 
 def _sides(geometry: OnSpline) -> Iterator[Array]:
-    """Yield the sides of the domain that bound it, as polylines (k, 2) of the parameters.
+    """Yield the sides of the domain that bound the surface, as polylines (k, 2) of the parameters.
 
-    Both sides of a mirrored seam do: normals change to the opposite ones there.
+    The sides of a mirrored seam count as such, since normals change to the opposite ones there.
     """
     spline = geometry.spline
     for axis, (ends, other) in enumerate(zip(spline.boundary, spline.domain[::-1], strict=True)):
@@ -220,9 +221,10 @@ def _trim_of(geometry: OnSpline) -> Trim | None:
 
 
 def _cut(spline: Spline, lines: Iterable[Array], axis: int) -> Iterator[Array]:
-    """Yield the parts of polylines (k, 2) that are off open sides, each on one side of a seam.
+    """Yield the parts of polylines (k, 2) inside the domain along `axis`, away from open sides.
 
-    Only mirrored seams count; parts beyond one are moved into the domain.
+    At a mirrored seam, polylines are cut, and parts beyond it are moved into the domain. Polylines
+    across a periodic seam stay whole.
     """
     kind, (low, high), other = spline.boundary[axis][0], spline.domain[axis], 1 - axis
     if kind == "periodic":

@@ -23,7 +23,7 @@ TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
 @dataclass(frozen=True, eq=False)
 class ParabolicLine:
-    """A line s u + t v + ρ = 0 of parabolic points, with s² + t² = 1; it has one normal.
+    """A line s u + t v + ρ = 0 of parabolic points that share a normal, with s² + t² = 1.
 
     Attributes
     ----------
@@ -125,7 +125,8 @@ def split_patch(control_points: ArrayLike) -> tuple[Piece, ...]:
     Returns
     -------
     tuple of Piece
-        Pieces that are wholly elliptic or hyperbolic; together they are the parameter triangle.
+        Pieces on each of which K has one sign; together they are the parameter triangle. A
+        developable patch is one piece of the sign 0.
 
     Raises
     ------
@@ -292,7 +293,8 @@ def _merged(angles: list[float]) -> list[tuple[float, int]]:
 def _row(patch: Patches, s: complex, t: complex) -> tuple[NDArray[Any], NDArray[Any], float]:
     """Return l of the parabolic line l·(u, v, 1) = 0 with a given direction, and its unit normal.
 
-    All points of the line have this normal. Also return its length before normalization.
+    All points of the line have this normal. Also return the length of the normal before
+    normalization.
     """
     normals = np.array(patch.apply(formulas.parabolic_normal, s, t))[..., 0]
     lengths = np.linalg.norm(normals, axis=1)

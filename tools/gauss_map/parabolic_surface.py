@@ -22,10 +22,10 @@ WORTH_A_WARNING = 1e-4
 # Isolated zeros of K count as one zero if the blocks of cells around them touch; a block reaches
 # this many cells from the cell of the zero.
 TOGETHER = 4
-# Derivatives of K below this bound count as zero. There are two of them. The derivative in the
-# direction in which the normal is constant, relative to the length of the gradient of K, vanishes
-# all along a curve with a single normal, such as the top circle of a torus. The length of the
-# gradient, relative to its maximum on the curve, vanishes where curves cross.
+# Two quantities count as zero below this bound. The derivative of K in the direction in which the
+# normal is constant, relative to the length of the gradient of K, vanishes all along a curve with a
+# single normal, such as the top circle of a torus. The length of the gradient, relative to its
+# maximum on the curve, vanishes where curves cross.
 NO_CHANGE = 1e-6
 
 

@@ -30,8 +30,8 @@ ORDER = "in the order b200, b020, b002, b110, b101, b011"
 class Patches:
     """The vectors a, b, c, d, e of eq. (8) of k patches, (k, 5, 3), in a unit near their size.
 
-    `noise` (k,) bounds the error of a component due to the rounding of the coordinates. Each patch
-    has a unit of its own, on which Gaussian images do not depend.
+    `noise` (k,) bounds the error of a component due to the rounding of the coordinates. The unit
+    may differ from patch to patch; Gaussian images do not depend on it.
     """
 
     vectors: Array

@@ -64,7 +64,8 @@ def inside(
 ) -> list[Array]:
     """Return the parts of a polyline (k, 2) inside a region, each of two vertices or more.
 
-    Parts end at the border of the region, up to rounding. A segment crosses it at most once.
+    Parts end at the boundary of the region, up to rounding. It is assumed that a segment crosses
+    the boundary at most once.
     """
     kept = contains(uv)
     at = np.flatnonzero(kept[1:] != kept[:-1])

@@ -58,7 +58,7 @@ def sign_changes(
 
 
 def with_borders(values: Array, noise: Array, kinds: tuple[str, str]) -> Array:
-    """Return values whose sign changes at those open boundaries on which they are zero.
+    """Return values whose sign changes at the open boundaries on which they are zero.
 
     The boundary is then a line between values ≥ 0 and < 0. Values count as zero up to `noise`. They
     must grow linearly from the boundary: otherwise they only touch zero.

@@ -146,9 +146,9 @@ def silhouette(
     -----
     Parts of the contour generator along which the normal is constant, such as straight ones and the
     circle on top of a torus seen along its axis, give isolated points or none. A polyline crosses
-    them in one step. From a viewpoint, curves smaller than an eighth of a cell of the spline may be
-    missed. `Silhouette.visible` says which points are seen; cusps and T-junctions of the outline
-    are not computed.
+    them in one step. From a viewpoint, curves smaller than half a cell of the spline may be missed
+    (an eighth of a cell, if the spline has at most 1,024 cells). `Silhouette.visible` says which
+    points are seen; cusps and T-junctions of the outline are not computed.
 
     Examples
     --------
