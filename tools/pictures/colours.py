@@ -24,7 +24,7 @@ CURVATURE = "gaussian_curvature"
 SIGNED = (CURVATURE, "mean_curvature")  # their scales are symmetric to zero
 UNITS = {CURVATURE: "1/length²", "mean_curvature": "1/length", "support": "length"}
 INDICES = ("face_index", "solid_index")
-MOST_DISTINCT, MOST_NAMES = 20, 12  # the most colours that differ well, the most labels of colours
+MOST_DISTINCT, MOST_NAMES = 20, 12  # the largest numbers: of distinct colours, of labels
 ROBUST = 95.0  # the percentile of sizes at the ends of a scale that is symmetric to zero
 
 

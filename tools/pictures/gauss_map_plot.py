@@ -36,10 +36,10 @@ def plot(self: GaussMap, *, view: Sequence[float] = VIEW) -> Figure:
     """Draw the parabolic curves on the surface, and their images, the folds, on the unit sphere.
 
     On the right is the surface with samples coloured by K, which changes its sign at the parabolic
-    curves; on the left are the normals of the samples, and the images of the parabolic curves with
-    their cusps. The number of points with a normal changes by two at a fold, and by one at the
-    image of a boundary. Parts hidden by the surface are not drawn; parts behind the sphere are
-    pale.
+    curves; on the left are the normals on the front of the sphere, and the images of the parabolic
+    curves with their cusps. The number of points with a normal changes by two at a fold, and by one
+    at the image of a boundary. Parts hidden by the surface are not drawn; parts behind the sphere
+    are pale.
 
     Parameters
     ----------

@@ -104,7 +104,7 @@ def _handle(colour: str, label: str, edge: str = "none") -> Line2D:
 
 
 def _marker_area(normals: NDArray[Any]) -> float:
-    """Return the area of a marker, in points², at which markers do not overlap on the sphere."""
+    """Return the area of markers that do not overlap on the sphere, in typographic points²."""
     mean = normals.mean(axis=0)
     length = float(np.linalg.norm(mean))
     depth = 1.0 - float((normals @ mean).min()) / length if length > 1e-3 else 2.0

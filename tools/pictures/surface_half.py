@@ -86,9 +86,10 @@ def _mark(
     scene: Scene,
     size: float,
 ) -> None:
-    """Mark points that have one normal, with arrows if they are few and heights are not rescaled.
+    """Mark points that share a normal.
 
-    If there are many points, marks have about the `size` of samples, in points of print.
+    Arrows show the normal if the points are few and heights are not rescaled. The marks of many
+    points have about the diameter of samples, `size`, in typographic points.
     """
     few = len(points) <= ARROWS
     if few and scene.factor == 1.0:

@@ -43,7 +43,8 @@ class Branches:
     mean_curvature : (k,) float64 array
         In 1/L, positive on a sphere with outward normals.
     patch_index : (k,) int64 array
-        Patches of the spline; −1 for no or several patches.
+        Patches of the spline, 0 for a surface itself or a single patch; −1 for no or several
+        patches.
     uv : (k, 2) float64 array
         Parameters of the points; NaN where `patch_index` is −1.
 

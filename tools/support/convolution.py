@@ -140,9 +140,9 @@ def convolve(
     Raises
     ------
     InputError
-        For invalid normals, for `cells` without a `Surface`, and for objects that are no surface.
+        For invalid normals, for `cells` without a `Surface`, and for objects that are not surfaces.
     UnknownNameError
-        If there is no surface of that name.
+        If the catalogue has no surface of that name.
     SurfaceError
         As `fit`.
 

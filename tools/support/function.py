@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 class SupportFunction:
     """A support function h(n): the distance of the tangent plane with normal n from the origin.
 
-    Make one with `of_spline`, `of_patch` or `from_sympy`. Several points of a surface may have one
+    Make one with `of_spline`, `of_patch` or `from_sympy`. Several points of a surface may share a
     normal, each on a *branch* of h; `branches` returns all of them. The envelope operator (7) gives
     the points, so that operations on surfaces are simple operations on support functions: `+`
     (convolution), `offset`, `translated`, `rotated`, `scaled`, `reversed`. They return new objects,
@@ -83,7 +83,7 @@ class SupportFunction:
         Raises
         ------
         InputError
-            For an object that is no surface, and for `cells` with a spline.
+            For an object that is not a surface, and for `cells` with a spline.
         UnknownNameError, SurfaceError
             As `fit`.
 

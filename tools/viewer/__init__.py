@@ -1,1 +1,1 @@
-"""Pages for browsers: samples and their normals, where a click on a sample marks its normal."""
+"""Pages for browsers: a surface and the sphere of its normals; a click on one marks the other."""

@@ -29,7 +29,7 @@ function frontOf(plot) {
     return { matrix, box, width, height, depths, found };
 }
 
-const BESIDE = 1e-9; // a pixel on the side of two triangles is on one of them
+const BESIDE = 1e-9; // so that a pixel on the common side of two triangles is inside of one of them
 
 /** Whether a sample is visible. It is lifted to the side of the viewer: a thin sheet hides no samples of its own. */
 function isSeen(front, i, viewer) {

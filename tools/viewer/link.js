@@ -1,7 +1,7 @@
 // The page: a selection on the surface lights up on the sphere, and a selection on the sphere
 // lights up on the surface.
 
-const MANY = 60; // points with large dots
+const MANY = 60; // the largest number of points with large dots
 let state = null; // what is picked: {normal}, {sample} or {face}
 const number = (x) => (Math.abs(x) < 5e-7 ? 0 : x).toPrecision(4).replace(/^-/, "−");
 const triple = (x) => `(${x.map(number).join(", ")})`;

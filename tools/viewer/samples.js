@@ -13,7 +13,7 @@ const points = decoded(data.points, Float32Array); // scaled to a diameter of 1
 const normals = decoded(data.normals, Float32Array);
 const prescribed = decoded(data.prescribed, Uint8Array); // samples at prescribed normals
 const neighbours = decoded(data.neighbours, Int32Array);
-const kind = decoded(data.kind, Uint8Array); // a place in KINDS, for each sample
+const kind = decoded(data.kind, Uint8Array); // an index of KINDS for each sample
 const count = kind.length;
 const COLOURS = data.colours, PALE = data.pale;
 const KINDS = ["elliptic", "hyperbolic", "parabolic"], EACH = [0, 1, 2];
