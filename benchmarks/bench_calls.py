@@ -1,7 +1,7 @@
-"""Whole calls as users make them: with reused memory, streams, densities, threads.
+"""Whole calls as users make them: with reused memory, streams, densities, threads, and meshes.
 
-Limits are those of `bench_sample`. The baseline of a stream is `gm.sample`, that of several threads
-is one thread, and that of a density is as many samples at normals alone.
+Limits are those of `bench_sample`. The baseline of a stream and of a mesh is `gm.sample`, that of
+several threads is one thread, and that of a density is the same number of samples at normals alone.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def terrain() -> gm.Spline:
     return gm.fit(gm.Surface.from_grid(np.stack([74.5 * x, -92.5 * y, heights], axis=-1)))
 
 
-# Normals, a spline, and how many rounds to time.
+# Normals, a spline, and the number of rounds.
 WHOLE = {
     "fibonacci-1M-64x64": (lambda: gm.fibonacci(1_000_000), lambda: gm.fit(TORUS, (64, 64)), 5),
     "icosphere-100-64x64": (lambda: gm.icosphere(100), lambda: gm.fit(TORUS, (64, 64)), 9),
@@ -87,7 +87,7 @@ def test_stream(compare):
 @pytest.mark.parametrize("step", ["find", "fill"])
 @pytest.mark.parametrize("cells", [8, 64, 256])
 def test_threads(compare, step, cells):
-    """Kernels in two threads, beside the same in one."""
+    """Kernels in two threads; the baseline is one thread."""
     spline, normals = gm.fit(TORUS, (cells, cells)), gm.icosphere(200)
     hits = find(spline, normals)
 

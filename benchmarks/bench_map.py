@@ -1,8 +1,8 @@
 """Points with given normals of a map that is built once, on the surface and on its spline.
 
 The limit is the writing of the same samples into new arrays, as in `bench_sample`; for few normals
-the ratio is that of the fixed costs of a call. The baseline of the surface is the same query to the
-spline, whose points are not proved to be all.
+the ratio is that of the fixed costs of a call. The baseline of the surface is the same query to its
+spline, without a proof that all points are found.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import pytest
 from gaussmap.benchmarks.writing import Writers, new_arrays
 
 SURFACES = {"torus": gm.surfaces.torus(), "wavy-graph": gm.surfaces.wavy_graph()}
-# Normals, and how many rounds to time.
+# The number of normals, and the number of rounds.
 NORMALS = {"1": (1, 25), "100": (100, 25), "10k": (10_000, 9), "1M": (1_000_000, 3)}
 
 

@@ -1,4 +1,4 @@
-"""Fewer fields and smaller numbers, each compared with `sample` by default."""
+"""Fewer fields and single precision, each compared with the default of `sample`."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ def limits():
 
 @dataclass(frozen=True)
 class Case:
-    """Normals for a spline of the torus, and how many rounds to time."""
+    """Normals, a spline of the torus, and the number of rounds."""
 
     normals: np.ndarray
     spline: gm.Spline

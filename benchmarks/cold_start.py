@@ -1,10 +1,10 @@
-"""What the first call of a process costs: with the kernels of the package, and without.
+"""The cost of the first call of a process: with the kernels of the package, and without.
 
-`python cold_start.py --check` is run by CI in an environment that has a wheel: no usual call, with
---all no call at all, may compile a kernel, or cost many seconds more than its repetition. `make
-kernels` lists what `--usual` compiles. Each call runs in a process of its own, whose
-NUMBA_CACHE_DIR is empty (but for `--usual`: the folder). This file needs nothing but Python, so
-that it can be run there.
+CI runs `python cold_start.py --check` in an environment with a wheel: no usual call, and with --all
+no call at all, may compile a kernel, or take more than MOST seconds longer than its repetition.
+`make kernels` lists the kernels that `--usual` compiles. Each call runs in its own process, whose
+NUMBA_CACHE_DIR is empty (with `--usual`, it is the given folder). This file imports only the
+standard library, so that it runs in that environment.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-# The most seconds of processor time that a first call may take beyond its repetition, and the most
-# of a call that imports SymPy and computes derivatives.
+# The largest number of seconds of processor time that a first call may take beyond its repetition;
+# the same for a call that imports SymPy and computes derivatives.
 MOST, MOST_OF_SYMPY = 1.5, 3.0
 TORUS = "gm.sample('torus', 10_000{})"
 WAVES = "np.hypot(*np.mgrid[-1:1:40j, -1:1:50j])**3"
@@ -78,7 +78,7 @@ COMMANDS = {
 PLOT = "`gaussmap plot`"
 if find_spec("matplotlib") is not None:
     COMMANDS[PLOT] = [*GAUSSMAP, "plot", "torus", "-o", "torus.png"]
-# An installation compiles what these need, beforehand (`usual.json`).
+# An installation compiles the kernels of these calls beforehand (`usual.json`).
 USUAL = (
     *list(CALLS)[:5],
     '… `density="gauss"`',
@@ -103,7 +103,7 @@ HERE_ONLY = {"GAUSSMAP_KERNELS": "0"}
 
 
 class Cost(NamedTuple):
-    """What a process cost, in seconds of processor time, and how many kernels it compiled."""
+    """The cost of a process in seconds of processor time, and in compiled kernels."""
 
     seconds: float
     """From the start of Python to the end of the first call, or of a process without repetition."""
@@ -114,7 +114,7 @@ class Cost(NamedTuple):
 
 
 def cost(arguments: Sequence[str], cache: Path, options: Mapping[str, str] | None = None) -> Cost:
-    """Run Python with arguments in the folder of the cache's parent; return what it cost."""
+    """Run Python with arguments, in the parent folder of the cache; return the cost."""
     environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), **(options or {})}
     before = _of_children()
     run = subprocess.run(
@@ -144,7 +144,10 @@ def programs() -> dict[str, list[str]]:
 
 
 def check(names: Iterable[str]) -> int:
-    """Return how many of these calls compile kernels or cost too much; print the cost of each."""
+    """Return the number of the named calls that fail; print the cost of each.
+
+    A call fails if it compiles kernels or costs too much.
+    """
     failed = 0
     with tempfile.TemporaryDirectory() as folder:
         cost(["-c", PART], Path(folder, "cache"))
@@ -152,7 +155,7 @@ def check(names: Iterable[str]) -> int:
             arguments = programs()[name]
             most = MOST_OF_SYMPY if "sympy" in name else MOST
             each = cost(arguments, Path(folder, f"cache{number}"))
-            if each.beyond > most:  # perhaps it has compiled modules of Python, once
+            if each.beyond > most:  # the first run may have compiled modules to byte code
                 each = cost(arguments, Path(folder, f"cache{number}"))
             is_right = each.compiled == 0 and each.beyond <= most
             failed += not is_right
@@ -164,7 +167,7 @@ def check(names: Iterable[str]) -> int:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print what first calls cost; return the exit code."""
+    """Print the costs of first calls; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="fail if a usual call compiles")
     parser.add_argument("--all", action="store_true", help="not only usual calls")

@@ -1,8 +1,8 @@
-"""Ratios, not seconds: every benchmark is timed in turns with what it is compared to.
+"""Ratios, not seconds: benchmarks are timed in turns with the work to which they are compared.
 
 The machine's speed drifts; a ratio of two times that were taken right after each other does not.
-`compare` keeps the median over the rounds of the ratio of each round. The table that these ratios
-make is printed at the end of the run, and they are in `extra_info` of the JSON report.
+`compare` keeps the median of the ratios of all rounds. A table of these ratios is printed at the
+end of the run, and they are in `extra_info` of the JSON report.
 """
 
 from __future__ import annotations
@@ -58,9 +58,9 @@ class Compare:
 
         A limit is the best that the machine can do: `of_<name>` is the share of its speed that is
         reached. It gets an untimed run before each timed one, which `work` does not get. A baseline
-        is what users know: `times_<name>` is how many times as long `work` takes. `units` says how
-        much is done in one round: 1000 samples give `samples_per_second`. With `warm`, everything
-        runs once before it is timed.
+        is work that users know: `times_<name>` is the time of `work` divided by its time. `units`
+        are the amounts of work in one round: {"samples": 1000} gives `samples_per_second`. With
+        `warm`, everything runs once before it is timed.
         """
         others = {**(limits or {}), **(baselines or {})}
         own: list[float] = []
@@ -114,16 +114,16 @@ def _seconds(work: Work) -> float:
 
 @pytest.fixture
 def compare(benchmark: Any, request: pytest.FixtureRequest) -> Compare:
-    """Time work in turns with what it is compared to: see `Compare.__call__`."""
+    """Time work in turns with limits and baselines: see `Compare.__call__`."""
     return Compare(benchmark, request.config.stash[ROWS])
 
 
 @pytest.fixture
 def run(tmp_path: Any) -> Callable[..., Work]:
-    """Make work that runs this Python with arguments, or a script of its folder, in a new process.
+    """Make work that runs this Python with arguments, or a script in its folder, in a new process.
 
-    run("-c", "import numpy") runs Python; run("surfaces", script="gaussmap") the console script.
-    `cache` is the folder that holds Numba's machine code.
+    run("-c", "import numpy") runs Python; run("surfaces", script="gaussmap") runs the console
+    script. `cache` is the folder of Numba's machine code.
     """
 
     def make(*arguments: str, script: str | None = None, cache: Any = None) -> Work:

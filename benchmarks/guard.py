@@ -1,10 +1,11 @@
-"""Fail if sampling is slower, relative to the writing limit, than benchmarks/recorded.json.
+"""Fail if sampling is slower, relative to the writing limit, than recorded in recorded.json.
 
-`make bench-guard` compares and `make bench-record` writes the record. What is compared is the time
-of writing the same arrays over that of sampling, both on one thread and in time of the processor,
-so that others on the machine disturb little. Each time is the best of ROUNDS, taken in turns:
-others only make times longer. (The best quotient of a round is one with disturbed writing.) Each
-kind of processor has a record of its own; on one that has none nothing is compared.
+`make bench-guard` compares, and `make bench-record` writes the record. A ratio is the time of
+writing the same arrays divided by that of sampling or fitting, both in processor time on one
+thread, so that other processes disturb it little. Both times are the least of ROUNDS, measured in
+turns, since other processes only make times longer. (The largest ratio of a single round would be
+that of a round with disturbed writing.) A case fails if its ratio is below SHARE of the recorded
+one. Each type of processor has its own record; on a processor without a record nothing is compared.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ Work = Callable[[], object]
 
 
 def _sampling(normals: np.ndarray, cells: int) -> tuple[Work, Arrays]:
-    """Return the search for samples of a spline of the torus and their filling, and their arrays.
+    """Return work that finds and fills the samples of a spline of the torus, and their arrays.
 
     The arrays are reused, as they are for the writing: the cost of new memory varies.
     """
@@ -50,7 +51,7 @@ def _sampling(normals: np.ndarray, cells: int) -> tuple[Work, Arrays]:
 
 
 def _fitting(cells: int) -> tuple[Work, Arrays]:
-    """Return gm.fit for a grid, and one array that is as large as its values."""
+    """Return gm.fit for a grid, and arrays of as many samples as the grid has points."""
     torus = gm.surfaces.torus()
     lines = [low + (high - low) * np.arange(cells) / cells for low, high in torus.domain]
     values = torus.evaluate(lines[0][:, None], lines[1])
@@ -85,10 +86,10 @@ def quotient(work: Work, limit: Work, rounds: int = ROUNDS) -> float:
 def compared(
     record: Mapping[str, float], measure: Mapping[str, Callable[[], float]], tries: int = TRIES
 ) -> list[tuple[str, float, float, bool]]:
-    """Return name, recorded, measured, and whether that is enough, for each case.
+    """Return for each case its name, the recorded and the measured ratio, and whether it passes.
 
-    Ratios that are not enough are measured again, up to `tries` times. Raises ValueError unless
-    exactly the cases that are measured are recorded.
+    A ratio that does not pass is measured again, up to `tries` times in total. Raises ValueError
+    unless the recorded cases are the measured ones.
     """
     if record.keys() != measure.keys():
         differ = ", ".join(sorted(record.keys() ^ measure.keys()))
@@ -105,7 +106,7 @@ def compared(
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Compare with the record of this kind of processor, or write it; return 1 if it is slower."""
+    """Compare with the record of this type of processor, or write it; return 1 if a case fails."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--record", action="store_true", help="write the record")
     write_record = parser.parse_args(arguments).record
@@ -138,12 +139,12 @@ def _measured(make: Callable[[], tuple[Work, Arrays]], write: Writers) -> float:
 
 
 def processor() -> str:
-    """Return what LLVM calls the processor: another one has other ratios."""
+    """Return the type of the processor, by its name in LLVM; ratios depend on it."""
     return str(get_host_cpu_name())
 
 
 def _store(record: Mapping[str, object]) -> None:
-    """Write the record beside its place, then rename it."""
+    """Write the record to a temporary file, then rename it."""
     text = json.dumps(record, indent=4) + "\n"
     written = RECORD.with_suffix(".tmp")
     written.write_text(text, encoding="utf-8")

@@ -1,7 +1,8 @@
 """Growth of the time of gm.sample with the number of samples, and with that of patches.
 
-The torus, a Fibonacci lattice of normals. A number of samples or patches beyond `largest` is left
-out. Beyond STREAMED samples they come in chunks from gm.sample_stream, and are counted only.
+The surface is the torus, and the normals are a Fibonacci lattice. Numbers of samples or patches
+above `largest` are left out. More than STREAMED samples come in chunks from gm.sample_stream, and
+are only counted.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ TORUS = gm.surfaces.torus()
 
 @dataclass(frozen=True)
 class Series:
-    """Times over growing sizes: (patches, samples, seconds) each."""
+    """Times for growing sizes: a row is (patches, samples, seconds)."""
 
     title: str
     rows: Sequence[tuple[int, int, float]]
@@ -36,7 +37,7 @@ class Series:
 
 
 def slope(pairs: Sequence[tuple[float, float]]) -> float:
-    """Return the slope of log(y) against log(x) by least squares; ValueError for under two x."""
+    """Return the slope of log(y) against log(x) by least squares; ValueError for a single x."""
     if len({x for x, _ in pairs}) < 2:
         raise ValueError("a slope needs two sizes")
     x, y = np.log(np.array(pairs, dtype=float)).T
@@ -49,7 +50,7 @@ def measure(largest: int) -> list[Series]:
 
 
 def by_samples(largest: int) -> Series:
-    """More and more normals for a spline of 64 × 64 cells."""
+    """Time growing numbers of normals for a spline of 64 × 64 cells."""
     spline = gm.fit(TORUS, (FIXED_CELLS, FIXED_CELLS))
     rows = []
     for size in (x for x in SIZES if x <= largest):
@@ -65,7 +66,7 @@ def by_samples(largest: int) -> Series:
 
 
 def by_patches(largest: int) -> Series:
-    """Finer and finer splines for the same normals; their fit is not timed."""
+    """Time finer and finer splines for the same normals; their fit is not timed."""
     normals = gm.fibonacci(FIXED_NORMALS)
     rows = []
     for size in (x for x in SIZES if x <= largest):

@@ -20,7 +20,7 @@ def write(
     first, last, number, index,
     points, normals, uv, support, gaussian, mean, normal_index, patch_index,
 ):  # fmt: skip
-    """Store the same number everywhere in the samples first, …, last − 1."""
+    """Store the same number everywhere in the samples [first, last)."""
     for k in range(first, last):
         points[k, 0] = number
         points[k, 1] = number
@@ -45,10 +45,10 @@ def new_arrays(count: int) -> Arrays:
 
 
 class Writers:
-    """Threads that write samples; a context, and then a function of their arrays."""
+    """A context manager with threads that write samples; it is called with their arrays."""
 
     def __init__(self, threads: int | None = None) -> None:
-        """Use `threads` threads, by default as many as samplers."""
+        """Use `threads` threads, by default the number that `gm.sample` uses."""
         self.threads = thread_count(threads)
 
     def __enter__(self) -> Writers:

@@ -27,14 +27,14 @@ LINEAR_DEFLECTION = 0.1
 
 
 def gmsh_by_curvature(form: ClosedForm, count: int) -> Work:
-    """Prepare a model and the number of elements per full turn of the normal that gives `count`."""
+    """Prepare a model, and the number of elements per full turn that gives `count` nodes."""
     meshed = gmsh_mesher(form)
     elements = tuned(meshed, 40.0, count, 2.0)
     return lambda: meshed(elements)
 
 
 def gmsh_mesher(form: ClosedForm) -> Mesher:
-    """Return a function that makes a mesh by Gmsh, of a number of elements per full turn."""
+    """Return a function: the mesh by Gmsh for a number of elements per full turn of the normal."""
     import gmsh
 
     if gmsh.isInitialized():
@@ -106,7 +106,7 @@ def opencascade_by_angle(form: ClosedForm, count: int) -> Work:
 
 
 def opencascade_mesher(form: ClosedForm, shape: Any) -> Mesher:
-    """Return a function that makes a mesh of a shape, of an angular deflection."""
+    """Return a function: the mesh of a shape for an angular deflection in radians."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepLib import BRepLib_ToolTriangulatedShape
     from OCP.BRepMesh import BRepMesh_IncrementalMesh

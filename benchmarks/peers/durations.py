@@ -62,7 +62,10 @@ samples.
 
 @dataclass(frozen=True)
 class Duration:
-    """Seconds for numbers of samples: at normals, by default, and those of NumPy's grid."""
+    """Seconds by numbers of samples: at normals, by default, and of a grid in NumPy.
+
+    `warm` are the seconds of the first samples in a new process: at normals, and by default.
+    """
 
     at_normals: dict[int, float]
     default: dict[int, float]
@@ -71,7 +74,7 @@ class Duration:
 
 
 def measure_durations(largest: int) -> Duration:
-    """Measure all, up to a number of samples."""
+    """Measure all durations, for numbers of samples up to `largest`."""
     counts = [x for x in COUNTS if x <= max(largest, FIRST)]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

@@ -22,7 +22,7 @@ class ClosedForm(ABC):
 
     name: str
     label: str
-    aspect: float  # of a lattice with cells of good shape: how many rows for a column
+    aspect: float  # the ratio of the numbers of values of u and of v for cells of good shape
 
     @property
     @abstractmethod
@@ -54,7 +54,7 @@ class ClosedForm(ABC):
         return np.abs(self.curvature(u, v)) * self.area(u, v)
 
     def lattice(self, count: int) -> tuple[Array, Array]:
-        """Return u (m, 1) and v (1, n), `count` places or so, each of a closed direction once."""
+        """Return u (m, 1) and v (1, n) of a lattice of about `count` different points."""
         m, n = (max(2, round(math.sqrt(count * x))) for x in (self.aspect, 1.0 / self.aspect))
         lines = [
             np.linspace(low, high, count, endpoint=ends[0] == "open")
@@ -202,7 +202,11 @@ class Waves(ClosedForm):
         return points[..., 0], points[..., 1]
 
     def preimages(self, normals: Array) -> tuple[Array, Array]:
-        """Return u and v from cos α cos β and sin α sin β, which are cos(α ∓ β) in pairs."""
+        """Return u and v of all points with one of the unit normals.
+
+        With α = frequency u and β = frequency v, a normal gives the products cos α cos β and
+        sin α sin β, whose sum and difference are cos(α − β) and cos(α + β).
+        """
         n_x, n_y, n_z = normals[normals[:, 2] > 0.0].T
         steepest = self.amplitude * self.frequency
         cosines, sines = -n_x / n_z / steepest, n_y / n_z / steepest

@@ -47,7 +47,7 @@ def processor() -> str:
 
 
 def memory() -> str:
-    """Return how much memory there is."""
+    """Return the size of the memory as text."""
     if not hasattr(os, "sysconf"):
         return "unknown memory"
     size = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")

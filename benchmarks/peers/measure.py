@@ -23,11 +23,11 @@ OWN_ROUNDS = 7
 
 @dataclass(frozen=True)
 class Measured:
-    """What a peer did on a surface; if `missing` says why it could not be used, all is 0.
+    """The results of a peer on a surface; all numbers are 0 if `missing` says why it is not used.
 
     `preparation` is in seconds, `rate` in points a second. `times_same` and `times_million` are the
-    rate of gaussmap over that of the peer, for the same count and for 10⁶ points. `errors` are E
-    and G of about JUDGED points.
+    rate of gaussmap divided by that of the peer, for the same count and for 10⁶ points. `errors`
+    are E and G of about JUDGED points, see `metrics.Errors`.
     """
 
     peer: Peer
@@ -42,7 +42,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Own:
-    """How fast a call of gaussmap is."""
+    """The speed of a call of gaussmap: `rate`, in points a second."""
 
     call: str
     points: int
@@ -88,7 +88,7 @@ def measure(form: ClosedForm, places: Places, peer: Peer) -> Measured:
 
 
 def measure_own(form: ClosedForm) -> list[Own]:
-    """Time what a user of gaussmap calls; each call once before, untimed."""
+    """Time calls of gaussmap; each runs once, untimed, before it is timed."""
     source, spline, normals = form.surface, gm.fit(form.surface), normals_for(form, MILLION)
     calls: list[tuple[str, Callable[[], gm.Samples]]] = [
         ("gm.sample(surface, normals=normals)", sampling(form, False, 100_000)),

@@ -24,7 +24,7 @@ SETTLED = 1e-6  # the greatest length of the last step, in the unit of the surfa
 
 @dataclass(frozen=True)
 class Quality:
-    """How well a mesh of so many vertices represents a surface.
+    """The errors of a mesh with this number of `vertices`.
 
     Distances are the largest from the surface to the mesh and back, in the unit of the surface;
     `worst` and `mean` are angles between the normals of both, in degrees. In 95 % of the triangles
@@ -83,7 +83,7 @@ def closest(mesh: Triangles, places: Array) -> tuple[np.ndarray, Array]:
 
 
 def on_mesh(corners: Array) -> Iterator[Array]:
-    """Yield places on all triangles (T, 3, 3): one after the other of their barycentric lattice."""
+    """Yield points (T, 3) of triangles (T, 3, 3), for each node of a barycentric lattice."""
     for i in range(PARTS + 1):
         for j in range(PARTS + 1 - i):
             yield np.tensordot(corners, [i / PARTS, j / PARTS, 1 - (i + j) / PARTS], ([1], [0]))
@@ -92,9 +92,9 @@ def on_mesh(corners: Array) -> Iterator[Array]:
 def to_surface(form: ClosedForm, points: Array) -> Array:
     """Return the distances of points near the surface from it.
 
-    The foot of the perpendicular is found in steps: it moves by the tangential component of its
-    vector to the point. A parameter that would leave an open domain is held, and the foot moves
-    along the border. ArithmeticError if the steps do not converge.
+    The foot of the perpendicular is found in steps: it moves by the tangential component of the
+    vector from the foot to the point. A parameter that would leave an open domain is held, and the
+    foot moves along the boundary. Raises ArithmeticError if the steps do not converge.
     """
     place = inside(form, np.stack(form.parameters(points)))
     moved = np.zeros(len(points))

@@ -1,7 +1,7 @@
 """Points on a mesh of 205,000 triangles, random or Poisson-disk: trimesh, Open3D, PyMeshLab.
 
-The meshes have the exact normals of the surface at their vertices, and samples get those,
-interpolated: that is nearer than the normals of the triangles.
+The meshes have the exact normals of the surface at their vertices. Samples get interpolated
+normals, which are more accurate than the normals of the triangles.
 """
 
 # Only `make bench-peers` installs these packages.
@@ -18,7 +18,7 @@ from .forms import Array, ClosedForm
 from .peer import Points, Work, tuned
 
 CELLS = 320**2
-CHOICE = 10  # random points for each of which farthest points are taken
+CHOICE = 10  # the number of random points for each farthest point
 
 
 def triangles(form: ClosedForm, cells: int = CELLS) -> tuple[Array, Array, np.ndarray]:
@@ -51,7 +51,7 @@ def trimesh_by_area(form: ClosedForm, count: int) -> Work:
 
 
 def trimesh_by_curvature(form: ClosedForm, count: int) -> Work:
-    """Prepare random points; a triangle has the weight |K| (the angle defects of its corners)."""
+    """Prepare random points; triangles have the weight |K|, from angle defects at their corners."""
     return _trimesh(form, count, by_curvature=True)
 
 
@@ -64,7 +64,7 @@ def _trimesh(form: ClosedForm, count: int, by_curvature: bool) -> Work:
     mesh = trimesh.Trimesh(points, faces, vertex_normals=normals, process=False)
     weight = None
     if by_curvature:
-        # the defects at the open border are its turning, and no curvature
+        # the angle defects at an open boundary are its turning, and not curvature
         defects = np.where(_on_border(form), 0.0, np.abs(mesh.vertex_defects))
         weight = (defects / mesh.vertex_degree)[faces].sum(axis=1)
     corners, corner_normals = mesh.triangles, np.asarray(mesh.vertex_normals)[faces]
@@ -78,7 +78,7 @@ def _trimesh(form: ClosedForm, count: int, by_curvature: bool) -> Work:
 
 
 def _on_border(form: ClosedForm) -> np.ndarray:
-    """Say which vertices of the mesh lie on an open border of the domain."""
+    """Return a mask of the vertices of the mesh on open boundaries of the domain."""
     u, v = form.lattice(CELLS)
     border = np.zeros((u.size, v.size), dtype=bool)
     for axis, ends in enumerate(form.surface.boundary):
@@ -96,7 +96,7 @@ def open3d_by_area(form: ClosedForm, count: int) -> Work:
 
 
 def open3d_poisson(form: ClosedForm, count: int) -> Work:
-    """Prepare points with even distances: five times as many, of which the nearest are removed."""
+    """Prepare points with even distances: of five times `count` points, close ones are removed."""
     return _open3d(form, lambda mesh: mesh.sample_points_poisson_disk(count))
 
 
@@ -131,7 +131,7 @@ def _open3d(form: ClosedForm, sampled: Callable[[Any], Any]) -> Work:
 def pymeshlab_poisson(form: ClosedForm, count: int) -> Work:
     """Prepare points with even distances.
 
-    The number is aimed at by trial: PyMeshLab's own search for it (exactnumflag) is ten times
+    The requested number is found by trial: PyMeshLab's own search (exactnumflag) is ten times
     slower.
     """
     import pymeshlab

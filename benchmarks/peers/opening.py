@@ -1,4 +1,4 @@
-"""How docs/performance.md opens: where gaussmap wins and where it does not, by its own tables."""
+"""The opening of docs/performance.md: a summary of the tables of the page."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ explained below the table.
 
 
 def opening(text: str) -> str:
-    """Return the section of a page, from the tables that it has of each surface."""
+    """Return the opening of a page, from its tables of all surfaces."""
     found = [rows for rows, *_ in tables(text, SPEED).values()]
     others: dict[str, list[tuple[dict[str, str], dict[str, str]]]] = {}
     for mine, *rows in found:  # gaussmap comes first
@@ -62,7 +62,7 @@ def opening(text: str) -> str:
 
 
 def _better(pairs: list[tuple[dict[str, str], dict[str, str]]], what: str) -> int:
-    """Return on how many surfaces gaussmap has the smaller error."""
+    """Return the number of surfaces on which gaussmap has the smaller error."""
     return sum(float(mine[what]) < float(other[what]) for mine, other in pairs)
 
 

@@ -20,7 +20,7 @@ from .splines import NET
 
 @dataclass(frozen=True)
 class OnSurface:
-    """All that was measured on one surface; `judged` is E and G of gaussmap."""
+    """The measurements on one surface; `judged` is E and G of gaussmap."""
 
     form: ClosedForm
     peers: Sequence[Measured]

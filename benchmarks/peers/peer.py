@@ -1,4 +1,4 @@
-"""A peer: what somebody uses today to get points with normals, and how its time is compared."""
+"""A peer: another way to get points with normals; and the comparison of its time."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ class Peer:
     """One way to points with normals.
 
     `prepare(form, count)` does all that need not be repeated for further points of a surface (a
-    mesh, a model, the search for the setting that gives `count`), and returns what is timed.
-    `count` points are asked of it `rounds` times. `density` says whether they follow curvature.
+    mesh, a model, the search for the setting that gives `count`), and returns the work that is
+    timed. In each of `rounds` rounds, `count` points are requested. `density` says whether their
+    density follows curvature.
     """
 
     title: str
@@ -35,11 +36,11 @@ class Peer:
     prepare: Callable[[ClosedForm, int], Work]
     count: int
     rounds: int = 3
-    on_net: bool = False  # whether it samples the B-spline, and gaussmap that too
+    on_net: bool = False  # whether both the peer and gaussmap sample the B-spline
 
     @property
     def missing(self) -> str:
-        """Why it cannot be used here; empty if it can."""
+        """The reason why the peer cannot be used here; empty if it can."""
         try:
             import_module(self.module)
         except (ImportError, OSError) as error:
@@ -49,9 +50,9 @@ class Peer:
 
 @dataclass(frozen=True)
 class Turns:
-    """Median seconds of work, how many points came, and how many times as long as others it took.
+    """The median seconds of work, the number of its points, and `times`.
 
-    The last is the median of the ratios of the single rounds.
+    `times` are the ratios of the time of the work to the times of others: medians over the rounds.
     """
 
     seconds: float
@@ -83,9 +84,9 @@ def in_turns(work: Work, others: Mapping[str, Callable[[], object]], rounds: int
 
 
 def tuned(points_of: Callable[[float], Points], knob: float, count: int, power: float) -> float:
-    """Return the setting that gives about `count` points, if N grows as knob^power.
+    """Return the setting that gives about `count` points, if their number grows as knob^power.
 
-    It is looked for at no more than TUNED_AT points, as larger meshes take long.
+    The setting is searched with at most TUNED_AT points, since larger meshes take long.
     """
     goal = min(count, TUNED_AT)
     for _ in range(TRIES):

@@ -1,4 +1,4 @@
-"""What users write themselves in NumPy: a grid over (u, v), and random points of a density."""
+"""The usual methods in NumPy: a grid over (u, v), and random points with a density."""
 
 from __future__ import annotations
 

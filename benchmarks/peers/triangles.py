@@ -1,4 +1,4 @@
-"""Triangle meshes of about as many vertices: Gmsh, Open CASCADE, and a grid of parameters.
+"""Triangle meshes of about a given number of vertices: Gmsh, Open CASCADE, parameter grids.
 
 Vertices at equal positions, as on both sides of a seam, are merged.
 """

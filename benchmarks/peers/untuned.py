@@ -1,4 +1,4 @@
-"""Two more surfaces that no constant of gaussmap was chosen for."""
+"""Two more surfaces: a monkey saddle, and a boss with fillets as in CAD."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .forms import Array, ClosedForm, stacked
 
 @dataclass(frozen=True)
 class MonkeySaddle(ClosedForm):
-    """The graph z = scale Re w³ over w = u + iv: K < 0, but for a flat point in the middle."""
+    """The graph z = scale Re w³ over w = u + iv: K < 0, except at a flat point in the middle."""
 
     scale: float = 0.5
     name = "monkey_saddle"
@@ -84,7 +84,7 @@ class Boss(ClosedForm):
 
     @property
     def joints(self) -> tuple[float, ...]:
-        """Where the five parts end, by arc length."""
+        """The arc lengths at which the five parts of the meridian end."""
         quarter = math.pi / 2.0
         lengths = (
             self.plate - self.foot, self.fillet * quarter, self.wall,

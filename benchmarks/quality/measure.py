@@ -1,4 +1,4 @@
-"""Judging and timing every way, and every mesh, on one surface."""
+"""Judging and timing all ways to points, and judging all meshes, on one surface."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ LAST = COUNTS[-1]
 
 @dataclass(frozen=True)
 class Found:
-    """What a way did for a count: how many points it gave, their errors, points a second.
+    """The result of a way for a count: the number of points, their errors, points a second.
 
-    `times` is how many times as fast gaussmap is with density="balanced", timed in turns; NaN for
-    all counts but the last.
+    `times` is the speed of gaussmap with density="balanced" divided by that of the way, timed in
+    turns; NaN for "balanced" itself, and for all counts but the last.
     """
 
     points: int
@@ -35,10 +35,9 @@ class Found:
 
 @dataclass(frozen=True)
 class OnSurface:
-    """All that was found on a surface.
+    """The results on a surface: `found` by way and count, and `meshes` by mesher.
 
-    `found` by way and count, `meshes` by mesher, `missing` says why a way or a mesher could not be
-    tried.
+    `missing` says why a way or a mesher could not be used.
     """
 
     form: ClosedForm
@@ -53,7 +52,7 @@ def measured(
     meshers: Sequence[Mesher],
     done: Callable[[str], object],
 ) -> OnSurface:
-    """Judge and time all ways, and judge all meshes; `done` is told each of them."""
+    """Judge and time all ways, and judge all meshes; `done` is called with the title of each."""
     result, places = OnSurface(form), Places.of(form)
     for way in ways:
         done(f"{form.name}: {way.title}")

@@ -1,4 +1,4 @@
-"""Meshes that are judged: those of gaussmap through samples of each density, and of others."""
+"""The meshes that are judged: of gaussmap, through samples of two densities, and of other tools."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Prefer = Literal["shape", "normals"]
 
 @dataclass(frozen=True)
 class Mesher:
-    """A way to meshes of about a number of vertices; `needs` is who has its package."""
+    """A way to get meshes of about a number of vertices; `needs` is a peer of the same package."""
 
     title: str
     needs: Peer
@@ -26,12 +26,12 @@ class Mesher:
 
     @property
     def missing(self) -> str:
-        """Why it cannot be used here; empty if it can."""
+        """The reason why the mesher cannot be used here; empty if it can."""
         return self.needs.missing
 
 
 def through(density: str, prefer: Prefer) -> Callable[[ClosedForm, int], Triangles]:
-    """Return meshes of `count` vertices: samples, and the points added on borders."""
+    """Return a function: a mesh of about `count` vertices, samples and added boundary points."""
 
     def mesh(form: ClosedForm, count: int) -> Triangles:
         first = gm.sample(form.surface, count=count, density=density)

@@ -1,4 +1,4 @@
-"""How docs/quality.md opens: where gaussmap wins and where it does not, by its own tables."""
+"""The opening of docs/quality.md: a summary of the tables of the page."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from gaussmap.docs.markdown import listed, markdown, wrapped
 
 from ..peers.opening import TITLE, tables
 
-# What is small where samples are good: the column of points, or of meshes, and its meaning.
+# Columns of points and of meshes, and their meanings. Good samples have small values.
 OF_POINTS = {
     "E": "the largest error of a normal, at the nearest sample in space",
     "mean E": "the same on average",
@@ -57,7 +57,7 @@ Table = list[dict[str, str]]
 
 
 def beside_gmsh(text: str) -> str:
-    """Return a table of E and G of densities and Gmsh, and what it says, from a page's tables."""
+    """Return a table of E and G of densities and Gmsh, with its summary, from a page's tables."""
     titles = (GAUSS, *OWN, GMSH)
     errors: dict[str, dict[str, tuple[float, float]]] = {}
     for surface, (rows, *_) in tables(text, "mean E").items():
@@ -86,7 +86,7 @@ def beside_gmsh(text: str) -> str:
 
 
 def opening(text: str) -> str:
-    """Return the section of a page, from the tables that it has of each surface."""
+    """Return the opening of a page, from its tables of all surfaces."""
     points = [rows for rows, *_ in tables(text, "mean E").values()]
     meshes = [rows for rows, *_ in tables(text, "worst angle").values()]
     speeds = [
@@ -116,14 +116,14 @@ def opening(text: str) -> str:
 
 
 def _wins(rows: list[list[str]], column: int, *names: str) -> str:
-    """Return in how many comparisons a density is best, of how many."""
+    """Return the number of comparisons in which a density is best, of all, as text."""
     pairs = [x[column].split(" of ") for x in rows if x[1] in names]
     wins, all_of_them = (sum(map(int, x)) for x in zip(*pairs, strict=True))
     return f"{wins} of {all_of_them}"
 
 
 def _row(name: str, surfaces: list[Table], which: str, what: str) -> list[str]:
-    """Return one line: how often each density is best, its quotients, and who is best elsewhere."""
+    """Return a row: each density's number of wins and quotients, and the best tools elsewhere."""
     quotients: list[list[float]] = []
     better: dict[str, int] = {}
     for rows in surfaces:
@@ -145,6 +145,6 @@ def _row(name: str, surfaces: list[Table], which: str, what: str) -> list[str]:
 
 
 def _wins_and_ends(quotients: Sequence[float]) -> tuple[str, str]:
-    """Return how many quotients are below 1, of how many, and their range."""
+    """Return two texts: the number of quotients below 1, of all, and the range of quotients."""
     wins = sum(x < 1 for x in quotients)
     return f"{wins} of {len(quotients)}", f"{min(quotients):.2f} to {max(quotients):.2f}"

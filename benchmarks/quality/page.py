@@ -1,4 +1,4 @@
-"""docs/quality.md: how well samples represent surfaces, compared with others."""
+"""docs/quality.md: the errors of samples and meshes of surfaces, compared with other tools."""
 
 from __future__ import annotations
 
@@ -74,13 +74,13 @@ def page(surfaces: Sequence[OnSurface], load: float | None = None) -> str:
 
 
 def folded(title: str, *tables: str) -> str:
-    """Return tables that are seen after a click on a title; browsers search in them, too."""
+    """Return tables that open after a click on a title; browsers search in them, too."""
     inner = "\n".join(tables)
     return f"<details>\n<summary>{title}</summary>\n\n{inner}\n</details>\n"
 
 
 def busy(load: float | None) -> list[str]:
-    """Return an item of a list that warns of times that were taken beside other work."""
+    """Return list items: a warning if other processes were running during the measurement."""
     if load is None or load < BUSY:
         return []
     return [

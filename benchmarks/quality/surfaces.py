@@ -1,4 +1,4 @@
-"""The surfaces of docs/quality.md beyond those of `bench-peers`: harder ones, and untuned ones."""
+"""The surfaces of docs/quality.md beyond those of `bench-peers`."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class SmallFillets(Boss):
 
 @dataclass(frozen=True)
 class ShearedTorus(Torus):
-    """The torus over sheared parameters, x(u + shear v, v): v-lines are no lines of curvature.
+    """The torus over sheared parameters, x(u + shear v, v): v-lines are not lines of curvature.
 
-    Where the shear is no whole number, v-lines do not close, and the torus is cut open at v = ±π.
+    If the shear is not an integer, v-lines do not close, and the torus is cut open at v = ±π.
     """
 
     shear: float = 1.0
@@ -93,7 +93,10 @@ class BentPipe(ClosedForm):
         return a * np.sin(w * v), a * w * np.cos(w * v), -a * w * w * np.sin(w * v)
 
     def bent(self, u: Array, v: Array) -> tuple[Array, Array]:
-        """Return the larger and the smaller factor of the area: |c'| and 1 − radius κ cos u."""
+        """Return |c'| and 1 − radius κ cos u, for the curve c and its curvature κ.
+
+        Their product with the radius is the area element.
+        """
         _, slope, second = self.spine(v)
         speed = np.sqrt(1.0 + slope * slope)
         return speed, 1.0 - self.radius * second / speed**3 * np.cos(u)
@@ -133,7 +136,7 @@ class BentPipe(ClosedForm):
         return np.arctan2(z, across), v
 
     def preimages(self, normals: Array) -> tuple[Array, Array]:
-        """Return u and v: the curve is perpendicular to the normal where its slope is −n_x/n_y."""
+        """Return u and v: the slope of the curve is −n_x/n_y where it is perpendicular to n."""
         x, y, _ = normals.T
         reached = (np.abs(x) <= self.swing * self.turns * np.abs(y)) & (y != 0.0)
         n_x, n_y, n_z = normals[reached].T

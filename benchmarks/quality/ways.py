@@ -1,4 +1,4 @@
-"""What is judged: the paper's method with exact formulas, gaussmap's densities, and others."""
+"""The ways that are judged: the paper's method in closed form, gaussmap's densities, and others."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..peers.forms import Array, ClosedForm
 from ..peers.meshes import open3d_farthest, open3d_poisson, pymeshlab_poisson
 from ..peers.peer import Peer, Points, Work
 
-ROUNDS = 3  # of timing, and of judging Poisson disks; what takes long is timed once
+ROUNDS = 3  # of timing, and of judging Poisson disks; slow ways are timed once
 
 
 @cache
@@ -25,14 +25,14 @@ def normals_of_gauss(form: ClosedForm, count: int) -> Array:
 
 
 def perfect(form: ClosedForm, count: int) -> Work:
-    """Prepare the points that have exactly the normals which gaussmap takes for this count."""
+    """Prepare the points with exactly the normals that gaussmap chooses for this count."""
     normals = normals_of_gauss(form, count)
     form.preimages(normals[:1])  # raises NotImplementedError where there is no closed form
     return lambda: form.evaluate(*form.preimages(normals))
 
 
 def icosahedral(form: ClosedForm, count: int) -> Work:
-    """Prepare the points of a refined icosahedron, the refinement whose number is nearest."""
+    """Prepare the points at the normals of an icosphere, with a number nearest to `count`."""
 
     def came(frequency: int) -> int:
         return len(form.preimages(gm.icosphere(frequency))[0])
@@ -46,7 +46,7 @@ def icosahedral(form: ClosedForm, count: int) -> Work:
 
 
 def sampled(density: str) -> Callable[[ClosedForm, int], Work]:
-    """Return a peer that is gaussmap, from the surface itself: every call fits a spline."""
+    """Return a function that prepares `gm.sample` for a surface; each call fits a spline."""
 
     def prepare(form: ClosedForm, count: int) -> Work:
         surface = form.surface
