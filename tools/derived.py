@@ -52,11 +52,11 @@ def write(
         - `.ply`: binary, one vertex a sample, all columns and the report (in comments); reads
           back bit for bit. Indices are 32-bit. Needs the field `points`.
         - `.csv`: a header row and one row a sample; as many digits as it takes to read the same
-          numbers again. Where the unit of length is known, of parts and of terrain with a
-          reference system, columns of lengths and curvatures name it: `x [mm]`. Samples of a CAD
-          part that have `face_index` and know their part also have the columns `source_index`,
-          `face_name`, `face_kind` and `face_radius` of the face. With the extra "tables" Polars
-          writes the file, ten times as fast.
+          numbers again. Where the unit of length is known, of parts and of terrain with a reference
+          system, columns of lengths and curvatures name it: `x [mm]`. Samples of a CAD part that
+          have `face_index` and know their part also have the columns `source_index`, `face_name`,
+          `face_kind` and `face_radius` of the face, and samples of terrain `slope` and `aspect`.
+          With the extra "tables" Polars writes the file, ten times as fast.
         - `.xyz`: rows `x y z nx ny nz`, digits as in `.csv`, no header. Needs `points` and
           `normals`.
         - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs `points`, and
@@ -129,9 +129,9 @@ def mesh(
 
     Samples on a graded grid (`row` and `column`) stay vertices, however long its cells are.
 
-    An `offset` has a mesh unless it folds or is trimmed. A fold is detected at samples, by their
-    curvatures or, without curvatures, by edges that turn around. A fold between samples is not
-    detected.
+    An `offset` has a mesh unless it folds, is trimmed, or belongs to a CAD part or a one-sided
+    surface. A fold is detected by edges that turn around and by the curvatures of the samples, if
+    they have these. A fold between samples is not detected.
 
     For a CAD part the result is a `PartMesh` of new vertices, as many as there are samples: first
     the vertices and edges of the part are sampled, once for both adjacent faces, then the interior
@@ -174,10 +174,11 @@ def mesh(
         Unless the samples have the fields points, normals and uv; those on a grid (`density` of
         the report) need row and column, too.
     InputError
-        Without samples or spline, if a sample lies outside the domain of the spline, if `angle`
-        leaves no triangle, and, without `angle`, if there are too few samples for a mesh that
-        closes. For a CAD part, if there are fewer samples than its edges need, its file has no
-        loops of edges, or, for "shape", the density is neither "balanced" nor "uniform".
+        Without samples or spline, for an offset without a mesh, if a sample lies outside the domain
+        of the spline, if `angle` leaves no triangle, and, without `angle`, if there are too few
+        samples for a mesh that closes. For a CAD part, if there are fewer samples than its edges
+        need, its file has no loops of edges, or, for "shape", the density is neither "balanced" nor
+        "uniform".
     SurfaceError
         If no face of a CAD part can be meshed.
     MissingExtraError

@@ -82,8 +82,8 @@ def classify_patches(patches: AnySpline | ArrayLike) -> NDArray[np.int8]:
     Notes
     -----
     If the ten Bézier coefficients of the cubic `parabolic_cubic` have the same sign, this sign
-    decides; otherwise, the parabolic lines decide. Numbers that are zero up to the rounding of the
-    coordinates count as zero.
+    decides; otherwise, values of the cubic or the parabolic lines decide. Numbers that are zero up
+    to the rounding of the coordinates count as zero.
 
     Examples
     --------

@@ -125,11 +125,11 @@ def silhouette(
     Returns
     -------
     Silhouette
-        `Samples`: the points by normal, around the circle (`normal_index`) from the angle 0 to 2π,
-        then by patch, each exactly once. Their `polylines`, a tuple of (k,) int64 arrays, are the
-        rows in order along each curve of the contour generator, across patches and parabolic
-        points. A closed curve repeats its first row at its end; others end at open boundaries, or
-        at a trim.
+        `Samples`: each point once. Along a direction, points are sorted by normal, around the
+        circle (`normal_index`) from the angle 0 to 2π, then by patch; from a viewpoint, along the
+        curves. Their `polylines`, a tuple of (k,) int64 arrays, are the rows in order along each
+        curve of the contour generator, across patches and parabolic points. A closed curve repeats
+        its first row at its end; others end at open boundaries, or at a trim.
 
     Raises
     ------
