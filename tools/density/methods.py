@@ -124,9 +124,10 @@ def coverage(
     Returns
     -------
     float
-        The bound, at most 10 % above the largest distance that was found. For samples on the
-        surface, twice the largest distance of the surface from its spline is added. Infinite if
-        there are no samples.
+        The bound, at most 10 % above the largest distance that was found. For samples on a surface
+        whose derivatives are finite differences, distances are those from its spline, and twice the
+        largest distance of the surface from the spline is added, unless the surface has a pole.
+        Infinite if there are no samples.
 
     Raises
     ------

@@ -26,9 +26,9 @@ class Piece(ABC):
 
     `label` is its name in messages, `trim` the part of the domain that belongs to it, None for the
     whole domain. `indices` are the names and values of fields that are constant on the piece, such
-    as `face_index`, and the index of the first patch, `patch_index`. The distance between points of
-    the surface and points of `jets` is at most `distance`, in the unit L of the surface. Curvature
-    at scales below `finest` (2,), lengths in u and v, is noise.
+    as `face_index`, and the index of the first patch, `patch_index`. `distance` is the largest
+    measured distance between the surface and points of `jets`, in the unit L of the surface.
+    Curvature at scales below `finest` (2,), lengths in u and v, is noise.
     """
 
     label: str

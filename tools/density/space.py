@@ -175,9 +175,9 @@ class Space:
 
     @property
     def distance(self) -> float:
-        """A bound of the distance between the sampled surface and the surface of the cells.
+        """The largest measured distance between the sampled surface and the surface of the cells.
 
-        The bound is in the unit L of the surface. Cells may be evaluated on a spline.
+        It is in the unit L of the surface. Cells may be evaluated on a spline.
         """
         return max(x.distance for x in self.pieces)
 
