@@ -280,13 +280,13 @@ def turn_of(candidates, at, square, count, room):
 def find_widest(grids, lists, samples, bounds, room, found, gaps):
     """Find the point of each cell that is farthest from all samples, if at least least/√w away.
 
-    found (M,): for each cell, the index of this fine point; −1 for the candidate itself, if its
-    bucket has no samples or the chord at the candidate counts; −2 if all points are nearer. gaps
-    (M, 2) are w, and w times the squared distance d². If w = κ², this product is about the squared
-    chord c² between the normals of the point and of the nearest sample. Where κ jumps, c² at the
-    candidate may be larger: then it counts instead, with w = c²/d² up to the ceiling. A chord above
-    `most` never counts: the two normals belong to the two sides of an edge. `bounds` are `least`,
-    `most` and the ceiling.
+    found (M,): for each cell, the index of this fine point; −1 for the candidate itself, if no
+    listed sample is on its side or the chord at the candidate counts; −2 if all points are nearer.
+    gaps (M, 2) are w, and w times the squared distance d². If w = κ², this product is about the
+    squared chord c² between the normals of the point and of the nearest sample. Where κ jumps, c²
+    at the candidate may be larger: then it counts instead, with w = c²/d² up to the ceiling. A
+    chord above `most` never counts: the two normals belong to the two sides of an edge. `bounds`
+    are `least`, `most` and the ceiling.
     """
     candidates, sides = grids.candidates, lists.sides
     least, most, ceiling = bounds
