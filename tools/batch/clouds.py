@@ -62,7 +62,7 @@ class Clouds:
         return (self[place] for place in range(len(self)))
 
     def _rows(self, part: int, count: int) -> NDArray[np.int64]:
-        """Return the indices (points,) of the samples of a part to take.
+        """Return the indices (points,) of the samples that are taken from a part.
 
         No sample is repeated before all have been taken.
         """

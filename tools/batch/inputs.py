@@ -82,7 +82,7 @@ def _of_surface(part: int, surface: Surface | Spline | Part) -> Input:
 
 
 def content_of(source: Surface | Spline | Part | Path) -> str:
-    """Return a SHA-256 that identifies a part: that of a file's bytes, or of points of a surface.
+    """Return a SHA-256 that identifies a part, from the bytes of its file, arrays or points.
 
     A surface given by a function is identified by its points at a lattice of parameters; the code
     of the function does not matter.

@@ -21,7 +21,10 @@ def _column(meaning: str, unit: str = "", **default: Any) -> Any:  # noqa: ANN40
 
 @dataclass(frozen=True, slots=True)
 class ManifestRow:
-    """A row of the manifest: the status and results of a part, however often it was sampled."""
+    """A row of the manifest: the status and results of a part.
+
+    They do not depend on when, or how often, the part was sampled.
+    """
 
     part: int = _column("the number of the part in the list, from 0 on")
     name: str = _column("the name of the part")

@@ -118,7 +118,7 @@ def _apart(
 def _in_normal_space(normals: Array) -> Array:
     """Return candidates (M, 8) in normal space: their points are the unit vectors `normals`.
 
-    All candidates have one common normal, and one common density.
+    All candidates have the same normal, so that they are on the same side, and the same density.
     """
     rows = np.zeros((len(normals), 8))
     rows[:, :3], rows[:, 3], rows[:, 6] = normals, 1.0, 1.0

@@ -1,8 +1,7 @@
 """Lines u = const or v = const at which the curvature of a surface jumps, or K changes its sign.
 
 Examples are joints of a plane and a fillet, knot lines, and parabolic curves that are parameter
-lines.
-The lines of a grid stay half a step away from them.
+lines. The lines of a grid stay half a step away from them.
 """
 
 import numpy as np

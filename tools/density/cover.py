@@ -47,7 +47,7 @@ class Cover:
 
     A point is covered if a sample is within radius/√w, where w is the target density of the space.
     Lengths are scaled as in `Space`. The samples are rows of `points` (N, 6), point and unit
-    normal, and `curvatures` (N,), K. The first samples, `given` of them, are the samples
+    normal, and `curvatures` (N,), K. The first `given` samples are the samples
     `at_normals`. The added samples lie at the places of the cells `added`, first the samples of the
     `grid`, if it exists.
 

@@ -56,9 +56,8 @@ class BoundaryArc:
         Returns
         -------
         (count, 3) float64 array
-            The normals. At a singular end, their limit is returned.
-            The result is NaN if the whole arc has no normals, and at a singular point inside the
-            arc, where its `parts` end.
+            The normals. At a singular end, their limit is returned. The result is NaN if the whole
+            arc has no normals, and at a singular point inside the arc, where its `parts` end.
 
         Raises
         ------

@@ -246,7 +246,7 @@ def _cut(spline: Spline, lines: Iterable[Array], axis: int) -> Iterator[Array]:
 
 
 def _inside(trim: Trim | None, uv: Array, nudges: Array) -> list[Array]:
-    """Return the parts of a polyline (k, 2) in the trim, moved by one of the `nudges` (m, 2)."""
+    """Return the parts of a polyline (k, 2) that some of `nudges` (m, 2) moves into the trim."""
     if trim is None:
         return [uv]
 
