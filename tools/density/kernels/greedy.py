@@ -79,7 +79,7 @@ def squared_distance(rows, k, x):
 
 
 def update(grids, kept, number, bucket, x, n):
-    """Update the distances of the candidates of a bucket from their nearest samples."""
+    """Update the distances of the candidates of a bucket for a sample at x with normal n."""
     candidates = grids.candidates
     for at in range(grids.starts[bucket], grids.starts[bucket + 1]):
         square = squared_distance(candidates, at, x) * candidates[at, DENSITY]

@@ -15,7 +15,7 @@ from ....runtime.machine_code.jit import inline, jit
 
 # The width of the cells of a grid, relative to the widest gap that is searched in it.
 CELL = 2.0
-# The powers of two that 1/√density can have.
+# The number of grids, one for each power of two that 1/√density can have.
 LEVELS = 1100
 # The columns of candidates: point, unit normal, density, squared distance.
 NORMAL, DENSITY, SQUARE = 3, 6, 7
