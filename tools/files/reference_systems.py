@@ -10,8 +10,8 @@ from ...runtime.base.extras import from_extra
 
 Array = NDArray[np.float64]
 
-# UTM is for latitudes from SOUTH to NORTH, UPS for those beyond; POLAR are the EPSG codes of the two
-# zones of UPS, north and south.
+# UTM is for latitudes from SOUTH to NORTH, UPS for those beyond. POLAR are the EPSG codes of both
+# zones of UPS: north, south.
 SOUTH, NORTH, POLAR = -80.0, 84.0, (32661, 32761)
 # The largest range of longitude, in degrees, for one zone of UTM: in a wider range, the scale is
 # wrong by a percent.
