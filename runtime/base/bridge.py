@@ -58,7 +58,10 @@ def reading() -> ModuleType:
 def tape_steps(
     position: Sequence[Any], symbols: Sequence[Any]
 ) -> tuple[list[Any], list[int]] | None:
-    """Return the tape of three expressions in two symbols (see `symbolic.tape`), or None."""
+    """Return the tape of three expressions in two symbols; None if tapes lack an operation.
+
+    See `symbolic.tape`.
+    """
     from ...symbolic.tape import NoTapeError, tape_steps
 
     try:

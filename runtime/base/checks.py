@@ -97,7 +97,8 @@ def as_float(value: SupportsFloat | str) -> float:
 def listed(values: object) -> list[Any] | None:
     """Return the elements of an iterable object as a list; None for texts, dicts, other objects.
 
-    None is also returned for more than MOST_LISTED elements. An empty sequence gives [].
+    None is also returned for more than MOST_LISTED elements, those of nested sequences included. An
+    empty sequence gives [].
     """
     if isinstance(values, str | bytes | dict) or _size(values) > MOST_LISTED:
         return None
@@ -111,8 +112,9 @@ def listed(values: object) -> list[Any] | None:
 def _size(values: object) -> int:
     """Return the number of entries of a sequence or array, including those of nested sequences.
 
-    The number is 1 for any other object.
-    A view of an array, or a `range`, may have more entries than fit into memory.
+    Nested sequences are assumed to be as long as the first of them. The number is 1 for any other
+    object. Nothing is converted: a view of an array, or a `range`, may have more entries than fit
+    into memory.
     """
     size, depth = 1, 0
     while isinstance(values, list | tuple | range | np.ndarray) and depth < DEEPEST:
@@ -239,7 +241,7 @@ def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
 
 
 def parameter_arrays(u: ArrayLike, v: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return u and v, broadcast to one shape; InputError if they are not real numbers."""
+    """Return u and v, broadcast to one shape; InputError if they do not, or are not real."""
     u_array, v_array = real_array(u, "u"), real_array(v, "v")
     try:
         shape = np.broadcast_shapes(u_array.shape, v_array.shape)

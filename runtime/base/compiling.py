@@ -1,6 +1,6 @@
 """A notice on terminals and in notebooks while kernels are compiled at their first call.
 
-Importing this module installs it; each module with kernels that users call imports it.
+Importing this module installs it; `machine_code.jit`, which all kernels need, imports it.
 """
 
 import sys
@@ -11,7 +11,8 @@ from numba.core import event
 
 PACKAGE = __name__.partition(".")[0]
 ERASE = "\r\033[K"  # to the start of the line, and clear it
-NOTEBOOKS = "ipykernel."  # whose standard error is no terminal, and shows lines that change
+# The package of the standard error of notebooks: not a terminal, but a line in it can be replaced.
+NOTEBOOKS = "ipykernel."
 # The notice appears after this many seconds of compilation.
 PATIENCE = 2.0
 

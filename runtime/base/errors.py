@@ -59,7 +59,7 @@ class InputError(GaussmapError, ValueError):
 
 
 class SurfaceError(GaussmapError):
-    """A surface or a curve cannot be evaluated: its callable raised, or did not return points.
+    """A surface, curve or part cannot be evaluated or sampled; its callable raised, for example.
 
     Examples
     --------
@@ -75,9 +75,9 @@ class SurfaceError(GaussmapError):
 
 
 class UnknownNameError(GaussmapError, LookupError):
-    """A surface, formula or file type of that name does not exist.
+    """A name, such as that of a surface, a formula or a field, does not exist.
 
-    It is a LookupError, too; the message lists similar names.
+    It is a LookupError, too; the message lists similar names, or all names.
 
     Examples
     --------

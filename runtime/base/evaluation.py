@@ -21,8 +21,8 @@ def evaluated(
     """Return the points (..., dimension) of a callable; `parameters` are arrays of one shape.
 
     Raises SurfaceError, which names the callable by `label`, if the callable raises, or returns
-    another shape, anything but real numbers, or NaN or infinity where values are `needed`; the
-    message gives the parameters.
+    another shape, anything but real numbers, or NaN or infinity where values are `needed`. The
+    message gives the parameters of a value that is not finite.
     """
     arrays = {name: np.atleast_1d(x) for name, x in parameters.items()}
     points = returned(function, tuple(arrays.values()), (dimension,), f"the callable of {label}")
@@ -111,7 +111,10 @@ def _hint(values: ArrayLike, found: tuple[int, ...], expected: tuple[int, ...]) 
 def called(
     function: Callable[..., ArrayLike], arrays: Sequence[NDArray[np.float64]], label: str
 ) -> ArrayLike:
-    """Call a callable with copies of arrays; SurfaceError if it raises."""
+    """Call a callable with copies of arrays; SurfaceError if it raises.
+
+    A GaussmapError or MemoryError is raised unchanged.
+    """
     try:
         with np.errstate(all="ignore"):
             return function(*(x.copy() for x in arrays))

@@ -57,7 +57,10 @@ def crs_label(crs: str) -> str:
 
 
 def warn_of_rounding(points: NDArray[np.floating], stacklevel: int) -> None:
-    """Warn if single precision moves points (N, 3) by much, relative to their spacing."""
+    """Warn if single precision moves points (N, 3) by more than ROUNDING of their spacing.
+
+    There is no warning if the subtraction of an origin would not help.
+    """
     if len(points) < FEWEST:
         return
     low, high = (x.astype(np.float64) for x in (points.min(axis=0), points.max(axis=0)))

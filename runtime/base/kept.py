@@ -8,7 +8,7 @@ Value = TypeVar("Value")
 
 
 class Immutable:
-    """A frozen dataclass that is pickled as its fields, without the values cached for it."""
+    """Base class of frozen dataclasses that are pickled as their fields, without cached values."""
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the fields, which are pickled."""

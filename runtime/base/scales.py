@@ -9,7 +9,7 @@ from .errors import SurfaceError
 
 # Above this binary exponent, products with a few small integers may overflow.
 LARGEST_EXPONENT = 1000
-# Points that are declared to coincide may be this far apart, relative to the size of the surface.
+# Points count as the same if their distance, relative to the size of the surface, is at most this.
 SAME_POINT = 1e-6
 # Rounding of coordinates, in units of the last place: coordinates result from several operations.
 ROUNDING = 64.0

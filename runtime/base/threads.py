@@ -48,7 +48,8 @@ def over_ranges(
         return
     starts = range(0, total, size)
     workers = min(thread_count(threads), len(starts))
-    # Nested work runs on its own thread, since all other threads may be waiting for it.
+    # Nested work runs in the thread that calls it: all threads of the pool may be waiting for such
+    # work.
     if workers <= 1 or getattr(_HERE, "is_worker", False):
         results = (work(first, min(first + size, total)) for first in starts)
     else:
@@ -59,7 +60,7 @@ def over_ranges(
 def _in_threads(
     work: Callable[[int], Result], starts: Iterable[int], workers: int
 ) -> Iterator[Result]:
-    """Yield work(start) in order, computed by threads that are at most AHEAD ranges ahead."""
+    """Yield work(start) in order; threads compute at most AHEAD ranges per thread ahead."""
     waiting, pool = iter(starts), _pool(workers)
     ahead = deque(pool.submit(work, start) for start in islice(waiting, AHEAD * workers))
     try:

@@ -30,9 +30,9 @@ SINGULAR_POINT = 2.0**-20
 # A point counts as near a singular point where the normal is shorter than this, relative to the
 # square of the tangents: the direction of the normal there needs parameters with many digits.
 NEAR_SINGULAR_POINT = 2.0**-12
-# A normal, or a slope along a normal, counts as zero if it is smaller than this, relative to the
-# product of the tangents or to the largest normal of the patch: 4096 ε, far above the rounding of
-# such a product.
+# A normal counts as zero if it is shorter than this, relative to the product or the square of the
+# tangents or to the largest normal of the patch, and so does the slope of a linear function,
+# relative to the tangents: 4096 ε, far above the rounding of such products.
 VANISHING = 2.0**-40
 # The error of a coefficient of the parabolic cubic, or of the cubic whose roots are directions of
 # parabolic lines, relative to the product of the lengths of the vectors in its terms: 256 ε.
@@ -68,7 +68,7 @@ DERIVATIVE_ERROR, PATCH_ERROR = 2.0**26, 2.0**8
 # The error of a difference of two coefficients of a planar spline, in units of the last place of
 # the largest coordinate.
 DIFFERENCE_ERROR = 8.0
-# The error of the integral of κ² over a surface: a smaller integral counts as zero.
+# The error of the integral of κ² over a surface. It replaces a smaller integral.
 FLAT_SURFACE = 1e-9
 # The error of distances on a surface, relative to its size.
 LENGTH_ERROR = 1e-15
@@ -88,7 +88,7 @@ NORMAL_ERROR = 1e-12
 # of the rounding of parameters and derivatives, or of the error of finite differences: a sample
 # with a larger error is not on the surface.
 NORMAL_NOISE = 1e-9
-# Two samples of one normal are the same point of the surface if their distance, relative to a cell
-# of the spline, is below this: the error of points that are found with numerical derivatives on a
-# surface far from the origin.
+# Two samples with the same normal are the same point of the surface if their distances in space and
+# in the parameters, relative to a cell of the spline, are at most this: the error of points that
+# are found with numerical derivatives on a surface far from the origin.
 MEETING = 2.0**-13
