@@ -82,10 +82,10 @@ class Reach:
     from_edges : float, optional
         The least distance, in L, from all edges and boundaries of faces of a part, or from the
         boundary of a surface: the boundary of its trim, and the open sides of its domain. A smooth
-        seam of one face is no edge. Creases between the pieces of a surface are edges.
+        seam of one face is not an edge. Creases between the pieces of a surface are edges.
     unobstructed : bool, default False
-        For CAD parts and closed surfaces: only points that a ray from outside along the axis
-        reaches before it meets the part or surface elsewhere. This is tested with a mesh, as in
+        For CAD parts and closed surfaces: only points from which the ray in the direction of the
+        axis does not enter the part or surface. This is tested with a mesh, as in
         `Samples.unobstructed`. Faces that were selected from a part are tested with the whole part.
     clearance : float, optional
         The least free length, in L, along the normal of the point: only points for which

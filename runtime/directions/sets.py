@@ -140,7 +140,7 @@ def healpix(nside: int) -> NDArray[np.float64]:
     InputError
         If `nside` is not a power of 2 in this range.
     MissingExtraError
-        If astropy-healpix is not installed, which the extra "spheres" brings.
+        If astropy-healpix is not installed; the extra "spheres" contains it.
 
     Examples
     --------

@@ -24,9 +24,10 @@ def as_normals(
 ) -> NDArray[np.float64]:
     """Return directions (S, dimension), of any non-zero lengths, as unit normals, float64.
 
-    A vector that already has unit length, up to rounding, is kept bit for bit; an array of such
-    vectors is returned itself, not a copy. Raises InputError for another shape, an empty array,
-    NaN, infinity, or a vector of length 0, with the index of its row.
+    A vector that already has unit length, up to rounding, is kept bit for bit. An array (S, 3) of
+    such vectors is returned itself, not a copy, if it is float64, C-contiguous and writeable.
+    Raises InputError for another shape, an empty array, NaN, infinity, or a vector of length 0,
+    with the index of its row.
     """
     if hasattr(normals, "normals"):  # samples: as an array they are points
         raise InputError(

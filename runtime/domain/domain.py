@@ -53,7 +53,7 @@ def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
 
     The open sides of a parameter are assumed if its entry in `periodic` is False; they are declared
     if the entry is "open".
-    Raises InputError if the conditions contradict each other.
+    Raises InputError if the conditions are unknown or contradict each other.
     """
     boundary = checked_sides(periodic)
     for name, other, ends, around in (("u", "v", *boundary), ("v", "u", *boundary[::-1])):
@@ -64,7 +64,7 @@ def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
 
 
 def checked_sides(periodic: Periodic) -> Boundary:
-    """Return the boundary conditions that `periodic` means; InputError if they are unknown.
+    """Return the boundary conditions that `periodic` means; InputError if they are unusable.
 
     Unlike `checked_boundary`, this allows a pole although the other parameter is not periodic.
     """
@@ -126,7 +126,7 @@ def less_periods(
 def places_in(domain: Domain, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return parameters u, v (count,) that are spread over a domain.
 
-    Relative to the domain they are i/√2 and i/√3, modulo 1.
+    Relative to the domain they are i/√2 and i/√3, modulo 1, for i = 1, …, `count`.
     """
     steps = np.arange(1, count + 1)
     u, v = (

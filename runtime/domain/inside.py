@@ -12,9 +12,9 @@ from .domain import widened
 from .kernels.trim import to_cells
 from .trim import Trim
 
-# A patch is divided into equal triangles, whose centroids are tested: FINEST² triangles for patches
-# at the boundary of the trim. Other patches are one triangle each; they are COARSE² triangles where
-# the trim cannot tell whether its boundary passes.
+# The share of a patch that is inside is estimated by the centroids of equal triangles: FINEST²
+# triangles if the boundary of the trim may pass through the cell of the patch, COARSE² if this is
+# unknown, and otherwise one.
 COARSE, FINEST = 4, 8
 POINTS_AT_A_TIME = 1 << 20
 
@@ -62,10 +62,7 @@ class Inside:
 
 
 def subcentroids(parts: int) -> Array:
-    """Return the centroids (parts², 2) of equal parts of the triangle (0, 0), (1, 0), (0, 1).
-
-    No centroid lies on a line through points whose coordinates are binary fractions.
-    """
+    """Return the centroids (parts², 2) of equal parts of the triangle (0, 0), (1, 0), (0, 1)."""
     i, j = (x.ravel() for x in np.indices((parts, parts)))
     upright, inverted = i + j < parts, i + j < parts - 1
     places = [np.stack([i, j], axis=1)[upright] + 1 / 3, np.stack([i, j], axis=1)[inverted] + 2 / 3]

@@ -30,8 +30,8 @@ POINTS_AT_A_TIME = 1 << 14
 MOST_PERIODS = 100
 # The number of pairs of a box and a segment in one batch.
 PAIRS_AT_A_TIME = 1 << 20
-# Loops overlap their copies if some point is inside twice. The tested points are beside the loops,
-# at the distance BESIDE relative to the domain: at least SIDES along a line across it.
+# Loops overlap their copies if some point is inside twice. Points at the distance BESIDE from the
+# loops, relative to the domain, are tested; they are spaced by at most 1/SIDES of the domain.
 BESIDE, SIDES = 1e-6, 64
 # The signs of the coordinates of the corners of a square around 0.
 CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
@@ -80,7 +80,7 @@ class Loops:
         return bool((inside.sum(axis=0) > 1).any())
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags:
-        """Return a mask (m, n) of the cells of a grid that the polygons may intersect."""
+        """Return a mask (m, n) of the cells of a grid that sides of the polygons may intersect."""
         low, high = np.array(domain).T
         steps = (high - low) / cells
         points = np.concatenate([_steps(x, steps / 2.0) for x in self.polygons])
@@ -120,7 +120,7 @@ class Loops:
 
     @cached_property
     def _limits(self) -> tuple[Array, Array]:
-        """The smallest and the largest parameters (2,) of points that may be inside."""
+        """The bounds (2,) to which u and v are clipped: just inside open sides, otherwise ±∞."""
         low, high = np.array(self.domain).T
         nudge = INSIDE * (high - low)
         is_open = np.array([not closes(ends) for ends in self.boundary])

@@ -35,8 +35,8 @@ class TrimPart(Protocol):
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
         """Classify boxes (k, 4), u₀, u₁, v₀, v₁, by their points with a given normal.
 
-        Each box has one of the normals (k, 3). Return 1 if all its points with this normal fulfil
-        the condition, −1 if none does, 0 if unknown.
+        Row i of `normals` (k, 3) belongs to box i. Return 1 if all points of the box with this
+        normal fulfil the condition, −1 if none does, and 0 if some do or if it is unknown.
         """
         ...
 
@@ -127,8 +127,8 @@ class Trim:
         (m, n) bool array
             True for each cell that the boundary of a polygon, or another known one, may intersect.
         (m, n) bool array
-            True for each cell in which a predicate may change, whose boundary is unknown. These
-            are all cells inside the known boundaries.
+            True for each other cell in which a predicate may change its value. These are all cells
+            whose centres are inside the known boundaries, since those of predicates are unknown.
 
         Examples
         --------
