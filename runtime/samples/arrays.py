@@ -119,9 +119,10 @@ class SampleArrays:
         Returns
         -------
         Samples
-            The rows of all parts, in order. The report counts all of them; entries that differ
-            between the reports of the parts are None. The spline, the surface and `offset_of` are
-            kept if they are the same for all parts.
+            The rows of all parts, in order. The report counts all of them, adds `proved`, and joins
+            `undecided`; other entries that differ between the parts are None, or "several surfaces"
+            for their labels. The spline, the surface and `offset_of` are kept if they are the same
+            for all parts.
 
         Raises
         ------

@@ -27,9 +27,9 @@ class Component(IntEnum):
         A point with K = 0 that is the only one with this normal nearby, or several that cannot be
         told apart.
     CURVE
-        A curve or a region of points with one normal; the sample is one of these points. Each piece
-        inside a trim has a sample, if the pieces and the gaps between them are longer than 1/256 of
-        a line u = const or v = const, or than 1/64 of any other curve or region.
+        A curve or a region of points with the same normal; the sample is one of these points. Each
+        piece inside a trim has a sample, if the pieces and the gaps between them are longer than
+        1/256 of a line u = const or v = const, or than 1/64 of any other curve or region.
     TIP
         A tip of the surface, such as that of a cone, whose normal cone contains the normal.
     CREASE

@@ -21,6 +21,8 @@ class OffsetOf:
         The spline that was sampled, None if it is unknown.
     surface : Surface, Part or None
         The surface, or the CAD part, on which the samples were before they were moved.
+    trimmed : bool
+        Whether a trimmed offset has left out samples.
 
     Examples
     --------

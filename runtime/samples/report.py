@@ -386,8 +386,8 @@ def common_report(
 def joined_proof(normals: int, reports: Iterable[SamplingReport]) -> dict[str, Any]:
     """Return the entries `proved` and `undecided` for normals searched on several surfaces.
 
-    All `normals` were searched on each surface, and each surface has one of the reports. The
-    undecided boxes come in the order of their normals.
+    All `normals` were searched on each surface; there is one report for each surface. The undecided
+    boxes come in the order of their normals.
     """
     undecided = sorted((y for x in reports for y in x.undecided or ()), key=attrgetter("normal"))
     return {"proved": normals - len({x.normal for x in undecided}), "undecided": tuple(undecided)}

@@ -70,7 +70,7 @@ class Samples(SampleArrays, Methods):
     component : (N,) uint8 array or None
         For samples at prescribed normals: the kind of the component of points with this normal that
         a sample represents, see `Component`. None for other samples, which are regular. Samples
-        that are not regular have K = 0, and are no vertices of meshes; their `weights` are 0.
+        that are not regular have K = 0, and are not vertices of meshes; their `weights` are 0.
     row, column : (N,) int64 array or None
         For samples on a grid (see ``density="aligned"`` of `sample`): the indices, from 0 on, of
         the lines v = const and u = const that meet at a sample; −1 for a sample that is not on a

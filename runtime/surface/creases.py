@@ -47,7 +47,7 @@ def smoothly_closed(nurbs: Nurbs, axis: int) -> bool:
     if apart(first[:, 0], last[:, 0], nurbs.control_points):
         return False
     if (np.einsum("ij,ij->i", first[:, 1 + axis], last[:, 1 + axis]) < 0.0).any():
-        return False  # a fold, with one normal on both sides
+        return False  # the tangent across the seam turns by more than 90°
     turning, jump = _turning(nurbs, axis, high, low), _jump(nurbs, axis, high, low)
     return turning <= CREASE_ANGLE and jump <= LARGEST_JUMP
 
@@ -61,7 +61,8 @@ def _candidates(nurbs: Nurbs, axis: int) -> list[float]:
     found = []
     values, counts = np.unique(knots, return_counts=True)
     for t, count in zip(values.tolist(), counts.tolist(), strict=True):
-        last = int(np.searchsorted(knots, t, "right")) - 1 - count  # basis function, not 0 at t
+        # The index of the last basis function that is not 0 at t.
+        last = int(np.searchsorted(knots, t, "right")) - 1 - count
         coincide = same[last + count - p : last]
         if low < t < high and (count >= p or coincide.all(axis=0).any()):
             found.append(t)

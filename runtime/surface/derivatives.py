@@ -1,8 +1,8 @@
 """Derivatives of surfaces: from formulas, from a user's callable, or by high-order differences.
 
 The differences are of nine points along u, along v and along one diagonal of the parameters. Steps
-are between 1/512 and 1/256 of the domain, and smaller if differences of seven points show that the
-surface varies faster.
+are between 1/512 and 1/256 of the domain, and smaller where differences of seven points give other
+derivatives.
 """
 
 from __future__ import annotations
@@ -144,7 +144,7 @@ def normals_of_jets(jets: Array) -> Array:
 
 
 def moved_inside(u: Array, v: Array, domain: Domain, boundary: Boundary) -> tuple[Array, Array]:
-    """Return the parameters inside the domain at which the surface has the same points.
+    """Return parameters inside the domain at which the surface has the same points as at u and v.
 
     They follow from the boundary conditions. Parameters beyond open boundaries are unchanged.
     """
@@ -214,7 +214,8 @@ def differences(
     jets[:, 1] = weighted(FIRST, shift_u, values[0]) / steps[0]
     jets[:, 2] = weighted(FIRST, shift_v, values[1]) / steps[1]
     uu, vv = weighted(SECOND, shift_u, values[0]), weighted(SECOND, shift_v, values[1])
-    both = weighted(SECOND, shift, values[2])  # h² x_uu ± 2 h k x_uv + k² x_vv
+    # h² x_uu ± 2 h k x_uv + k² x_vv for the steps h along u and k along v.
+    both = weighted(SECOND, shift, values[2])
     jets[:, 3] = uu / steps[0] ** 2
     jets[:, 4] = sign[:, None] * (both - uu - vv) / (2.0 * steps[0] * steps[1])
     jets[:, 5] = vv / steps[1] ** 2
@@ -308,7 +309,7 @@ def guarded(function: Evaluation, shape: tuple[int, ...], label: str) -> Functio
 
 
 def filled(function: Differentiable, numerical: Differences) -> Function:
-    """Return 2-jets from a formula, and numerical 2-jets where these are not finite."""
+    """Return 2-jets from a formula, replaced by numerical ones where they are not finite."""
 
     def jets(u: Array, v: Array) -> Array:
         found = function.jets(u, v)
@@ -323,7 +324,8 @@ def filled(function: Differentiable, numerical: Differences) -> Function:
 def compare(derivatives: Function, numerical: Differences, label: str) -> None:
     """Raise SurfaceError if given derivatives are not finite, or differ from numerical ones.
 
-    The message names the derivative, the parameters, and the difference.
+    They are tested where the numerical ones are finite. The message names the derivative, the
+    parameters, and the difference.
     """
     u, v = places_in(numerical.domain, PLACES)
     coarser = replace(numerical, step=2.0 * numerical.step)

@@ -1,7 +1,7 @@
-"""Reads and checks a user's expressions and conditions, and makes NumPy functions of them.
+"""Expressions and conditions of users: their checks, and NumPy functions that compute them.
 
 `symbolic.reading` defines the language of texts. SymPy is imported at first use. Functions are
-pickled as the expressions. Their derivatives are computed from a tape if the expressions have one.
+pickled as their expressions. Derivatives are computed from a tape if the expressions have one.
 Otherwise, as for Max(u, v), SymPy differentiates the expressions.
 """
 
@@ -257,7 +257,7 @@ def _jet(expressions: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> list[An
 
 
 def _with_floor(expression: Any) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Rewrite remainders in terms of floor, whose derivative is known."""
+    """Rewrite remainders and fractional parts in terms of floor, whose derivative is known."""
     import sympy as sp
 
     written = expression.replace(sp.Mod, lambda x, y: x - y * sp.floor(x / y))

@@ -1,4 +1,4 @@
-"""Reads and checks a user's NURBS surface, given by arrays or as an object of geomdl or Splipy."""
+"""The input of NURBS surfaces, from arrays or objects of geomdl or Splipy, and its checks."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from ..base.checks import finite_array, real_array, whole_number
 from ..base.errors import InputError, shown
 from .nurbs import Nurbs
 
-# No format for CAD data holds larger degrees.
+# The largest degree that Open CASCADE allows.
 MOST_DEGREE = 25
 # Control points whose weight is below this fraction of the largest weight do not affect the centre.
 LIGHT = 0.1

@@ -225,7 +225,7 @@ class Surface(SurfaceValues):
     ) -> Surface:
         """Make a surface of points, or of elevations.
 
-        The spline has one cell between any four neighbouring points, so that no detail is lost,
+        The spline, which approximates the points, has one cell between any four neighbouring points
         unless `fit` is called with other `cells`.
 
         Parameters
@@ -437,7 +437,8 @@ class Surface(SurfaceValues):
         Returns
         -------
         Surface
-            The surface, with the same name, domain and boundary conditions.
+            The surface, with the same name and domain. A reversal of u exchanges the boundary
+            conditions at its two bounds.
 
         Raises
         ------
@@ -465,7 +466,8 @@ class Surface(SurfaceValues):
         Returns
         -------
         Surface
-            The surface, with the same name, domain and boundary conditions.
+            The surface, with the same name and domain. The boundary conditions at the two bounds of
+            u are exchanged.
 
         Examples
         --------

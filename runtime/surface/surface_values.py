@@ -82,8 +82,8 @@ class SurfaceValues(Immutable):
             If the callable raises, returns another shape than (..., 3), anything but real numbers,
             or NaN or infinity inside of the trim; the message gives the parameters.
         InputError
-            If the parameters are not real numbers, or lie outside a surface that was given by
-            points.
+            If the parameters are not real numbers, or lie outside the domain of a NURBS or of a
+            surface that was given by points.
 
         Examples
         --------
@@ -104,9 +104,9 @@ class SurfaceValues(Immutable):
     def derivatives(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points and their first and second derivatives.
 
-        Derivatives are exact for the catalogue, for SymPy expressions and for NURBS, given by the
-        user for a callable with `derivatives`, and numerical otherwise: by differences of nine
-        points with steps of about 1/400 of the domain, which evaluate the callable only inside it.
+        Derivatives are exact for the catalogue, for SymPy expressions and for NURBS, and given by
+        the user for a callable with `derivatives`. Otherwise they are numerical: differences of
+        nine points inside the domain, with steps of about 1/400 of the domain.
 
         Parameters
         ----------
@@ -250,8 +250,8 @@ class SurfaceValues(Immutable):
 
         It is known for the catalogue, for SymPy expressions and callables made of smooth elementary
         functions (of NumPy), for NURBS unless their degrees or nets are large, and for affine
-        images of such surfaces; otherwise it is None. A callable is called once with arrays of
-        objects.
+        images of such surfaces; otherwise it is None. A callable is called with arrays of objects,
+        and with numbers to compare the values.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""Tracing of callables made of NumPy functions: they are called once with symbols.
+"""Tracing of callables made of NumPy functions: they are called with symbols.
 
 Callables that return points give tapes; those that return booleans give inequalities of tapes.
 """
@@ -46,7 +46,10 @@ def traced_tape(function: Function, domain: Domain) -> Tape | None:
 
 
 class ObjectArrays:
-    """NumPy, except that new float64 arrays are object arrays, which can hold traced numbers."""
+    """NumPy with other functions `empty`, `zeros` and `sinc`, for traced numbers.
+
+    New float64 arrays are arrays of objects, which can hold traced numbers.
+    """
 
     def __getattr__(self, name: str) -> object:
         return getattr(np, name)
@@ -194,7 +197,7 @@ class Traced:
     def __lt__(self, other: object) -> Condition:
         return -self > self.written("negative", other)
 
-    __ge__, __le__ = __gt__, __lt__  # Neither decides equality
+    __ge__, __le__ = __gt__, __lt__  # undecided on a box whose bounds contain equality
 
     def __abs__(self) -> AbsoluteValue:
         return AbsoluteValue(self.writer, (self * self.written("sign", self)).row, self)
