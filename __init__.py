@@ -11,5 +11,5 @@ import lazy_loader
 
 __version__ = "0.2.0"
 
-# The names are in __init__.pyi, each loaded when it is asked for: SymPy and Numba take their time.
+# The names are in __init__.pyi, each loaded at first use: the import of SymPy and Numba takes long.
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

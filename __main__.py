@@ -15,12 +15,12 @@ INTERRUPTED = 130
 
 
 def main() -> int:
-    """Run the command line with the arguments of the process, which is to end; return its code.
+    """Run the command line with the arguments of the process; return the exit code.
 
-    Ctrl-C ends it without a traceback also during the imports, which take a third of a second, and
-    does nothing any more when the work is done. What the imports make stays until the end of the
-    process: that the garbage collector goes through it again and again, and once more at the end,
-    would take as long.
+    The process must end afterwards. Ctrl-C ends it without a traceback, also during the imports,
+    which take a third of a second; it is ignored after the work. The garbage collector is off
+    during the imports, and later skips the objects that they made: its passes, one of them at the
+    end of the process, would take as long as the imports.
     """
     heard = signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if heard:
@@ -44,7 +44,7 @@ def main() -> int:
 
 
 def _leave(*_: object) -> None:
-    # Not KeyboardInterrupt: what is being imported might take it for an error of its own.
+    # No KeyboardInterrupt is raised: a module that is being imported might handle it as an error.
     with suppress(OSError):
         os.write(2, b"gaussmap: interrupted\n")
     os._exit(INTERRUPTED)

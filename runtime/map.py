@@ -38,8 +38,9 @@ OF_CREASES = ("points", "uv", "uv_radius", "normal_index", "component")
 class GaussMap(Methods):
     """The inverse Gauss map of a surface: all points with given normals, for repeated queries.
 
-    The surface is indexed when the map is made; it is fitted only if its points cannot be proved,
-    or when its spline is read. After that a query of one normal takes a fraction of a millisecond.
+    The surface is indexed when the map is made. It is fitted with ``on="spline"``, if its points
+    cannot be proved, or when its spline is read. After that a query of one normal takes a fraction
+    of a millisecond.
     Results do not depend on earlier queries, nor on the number of threads; several threads may
     query one map at once, and maps can be pickled. `sample` with `normals` gives the same samples,
     and caches the maps of the last eight surfaces.
@@ -119,7 +120,7 @@ class GaussMap(Methods):
     def _with_fit(self, samples: Samples, reach: Reach | None = None) -> Samples:
         """Return samples with their spline, and with a report that describes this spline.
 
-        With a `reach`, both refer to the part of the surface whose normals are in reach.
+        With a `reach`, both refer to the part of the surface that is in reach.
         """
         if len(self._pieces) != 1:
             return samples
@@ -140,8 +141,8 @@ class GaussMap(Methods):
     ) -> Samples:
         """Return every point whose normal is one of `normals`, each exactly once.
 
-        A tip is a point with the normals in its normal cone. Curves of points with one normal have
-        one sample each, see `Component`.
+        A tip counts as a point with each of the normals in its normal cone. A curve of points with
+        the same normal has one sample, see `Component`.
 
         Parameters
         ----------
@@ -307,7 +308,7 @@ class GaussMap(Methods):
         proved = all(isinstance(x, ProvedSurface) for x in self._pieces)
         wanted = checked_fields(fields, on_surface, proved, given=True)
         memory = {} if out is None else out.arrays()
-        # Points of creases are told from other points in double precision.
+        # Double precision distinguishes points of creases from other points.
         more = wanted if self._creases is None else [*dict.fromkeys([*wanted, *OF_CREASES])]
         given = number if self._creases is None else np.dtype(np.float64)
         pieces = [x.used(given, threads, memory).within(reach) for x in self._pieces]

@@ -29,18 +29,19 @@ from ..tape.kernels.points import Tape
 from ..tape.tapes import bounds_over_boxes, jets_of
 
 # Along creases, normals are known up to the angle SMOOTH. Where n·x_ww is 0, too, zeros of n·x_w
-# are known up to the root of that. Therefore points of one crease and normal that are closer than
-# APART, relative to the length of the crease in w, are one component. The signs of n·x_w before and
-# after a component are taken at the distance APART from the component.
+# are known up to APART, the square root of SMOOTH. Therefore points of one crease with the same
+# normal that are closer than APART, relative to the length of the crease in w, are one component.
+# The signs of n·x_w before and after a component are taken at the distance APART from it.
 SMOOTH = 1e-9
 APART = math.sqrt(SMOOTH)
-# The normals of both sides are known up to the angle ROUNDING. Up to the angle NEARLY, a point of a
-# crease may have a regular point beside it which cannot be told apart: one that is nearer than four
-# times its error bound, or than BESIDE, relative to the size of the creases.
+# The normals of both sides are known up to the angle ROUNDING. If the normal of a point of a crease
+# is that of one side up to the angle NEARLY, the point cannot be told apart from a regular point
+# beside it. Two points are beside each other if they are nearer than four times the error bound of
+# the regular point plus BESIDE times the size of the creases.
 ROUNDING, NEARLY, BESIDE = 2.0**-43, 2.0**-40, 2.0**-40
 # In intervals where n·x_w has at most one zero, there are STEPS steps of Newton's method. Other
 # intervals, and those where these steps do not settle, are halved. If a normal has more than MANY
-# of them, as on a straight crease, only those with a zero in the middle are kept.
+# intervals to halve, as on a straight crease, only those with a zero in the middle are kept.
 STEPS, MANY = 5, 4096
 # All combinations of whether the height increases along each of the four creases at a corner, and
 # the index of the corner for each combination.
@@ -57,10 +58,10 @@ class OnCreases(NamedTuple):
     `numbers` (k,) are the indices of the normals. `degrees` (k,) are the indices −1, 0 or 1 that
     the docstring of the module defines, or NaN where the index is unknown. The parameters of all
     points of a component differ by at most `radius` (k, 2) from `uv` (k, 2). A point is `unsure` if
-    its normal is nearly that of one side, or if its index is unknown. In the first case the side
-    may have a regular point with this normal next to it. If there is one, its index is −degree if
-    the points are `paired`, and only then there are both. `alone` is whether there is a point of
-    the crease if there is no such regular point.
+    its normal is nearly that of one side, or if its index is unknown. In the first case that side
+    may have a regular point with this normal beside the crease. If it has, the point of the crease
+    exists only if it is `paired`: the two points then have opposite indices. If it has not, the
+    point of the crease exists only if it is `alone`.
     """
 
     numbers: Indices
@@ -77,7 +78,7 @@ class Corner(NamedTuple):
     """A point where a crease u = const and a crease v = const cross.
 
     `lines` (2,) are the indices of both creases. `uv` (2,) are its parameters, `point` (3,) is its
-    position. Points of creases within `radius` (2,) of `uv`, which is rounding error, belong to the
+    position. Points of creases within `radius` (2,) of `uv`, the rounding error, belong to the
     corner. `tangents` (4, 3) are unit tangents of the four creases that leave the corner,
     counter-clockwise.
     """
@@ -93,7 +94,7 @@ class Corner(NamedTuple):
         """Return the corner of two creases with the given rows of `Creases.lines` and `.spans`."""
         (_, left, right, _), (_, below, above, _) = lines
         radius, size = lines[:, 2] - lines[:, 1], np.ptp(spans[::-1], axis=1)
-        radius -= size * np.rint(radius / size)  # on both sides of a seam
+        radius -= size * np.rint(radius / size)  # the bounds at a seam differ by a period
         u, v = np.array([right, right, left, right]), np.array([above, above, above, below])
         jets = jets_of(tape, u, v)
         tangents = jets[np.arange(4), [1, 2, 1, 2]] * [[1.0], [1.0], [-1.0], [-1.0]]
@@ -215,7 +216,7 @@ class Creases:
         )
         unsure, between = nearly.any(axis=0), slopes[0] * slopes[1] < 0.0
         keep = (facing > 0.0) & (unsure | between)
-        # At a pole, x_s is 0 and the creases that end there have no direction across.
+        # At a pole x_s is 0: creases that end there have no direction across.
         largest = np.linalg.norm(self.sides.after[0], axis=1).max()
         keep &= np.minimum(*lengths) > SMOOTH * largest
         uv = self._uv(rows, middle, 2)

@@ -30,7 +30,8 @@ def samples_at(
 ) -> Samples:
     """Return all points that have one of the unit normals (S, 3), sorted by normal.
 
-    A tip has the normals in its normal cone. For each normal, tips are the last samples.
+    A tip counts as a point with each of the normals in its normal cone. For each normal, tips are
+    the last samples.
     """
     at_tips = _at_tips(geometry, normals)
     if not at_tips:

@@ -1,4 +1,4 @@
-"""Components of the set of points with one normal, cut by the boundary of a trim.
+"""Components of the set of points with a given normal, cut by the boundary of a trim.
 
 A component that is a curve or a region is sampled: Gauss–Newton steps lead from the points of a
 grid on its box to points with the normal. Each piece consists of points with the normal inside the
@@ -70,7 +70,7 @@ def _rows(open_: Undecided, rows: Indices | Flags | list[int]) -> Undecided:
 
 
 class Grid(NamedTuple):
-    """A grid on a box of parameters, which are `low` + `step` · place for integers `places` (k, 2).
+    """A grid on a box: the parameters `low` + `step` · place, with integer `places` (k, 2).
 
     The step across a thin box is 0. `periods` (2,) are the periods of places, 0 for none.
     """

@@ -78,7 +78,8 @@ class Parameters:
     def solve(self, target: Target, numbers: Indices, few: int) -> Indices:
         """Do Newton steps until at most `few` rows are unsolved; return the indices of these.
 
-        `numbers` are the indices of the rows to solve; the steps start from target.uv.
+        `numbers` are the indices of the rows to solve; the steps start from target.uv. Rows that
+        are unsolved after MOST_STEPS steps are given up, and not returned.
         """
         count, rows = len(numbers), Rows.new(numbers)
         begin(target.uv, count, rows, self.box)
@@ -96,8 +97,9 @@ def refine(surface: Surface, spline: Spline, target: Target, threads: int | None
     """Replace samples of a spline by the points of the surface with the same unit normals.
 
     A sample is found if Newton's method leads to a point of the surface whose normal is the
-    prescribed one, up to NORMAL_ERROR, and where K has the sign of target.signs; next to a pole the
-    sign does not matter, since the spline has folds there. The parameters, point and curvatures of
+    prescribed one, up to NORMAL_ERROR or up to the noise of the surface where the method stagnates,
+    and where K has the sign of target.signs; next to a pole the sign does not matter, since the
+    spline has folds there. The parameters, point and curvatures of
     such a sample are overwritten. All other samples stay those of the spline: samples at parabolic
     and singular points, and samples whose solution is outside the domain or more than three cells
     away. `target.state` says of each sample whether it was found.

@@ -65,7 +65,7 @@ def geometry_of(
 ) -> OnPatches:
     """Return the geometry that is sampled without a proof: a spline, or a surface with its spline.
 
-    Raises what `place_of_samples` and `spline_of` raise.
+    Raises the errors of `place_of_samples` and `patches_of`.
     """
     place = place_of_samples(surface, on)
     spline = patches_of(surface, cells)

@@ -1,11 +1,11 @@
 """Repeated samples: samples at a fold of the spline that become the same point of the surface.
 
-At a fold of its Gaussian image, the spline has several points with one normal where the surface may
-have one. The signs of K of these points cancel in pairs, except for one point.
+At a fold of its Gaussian image, the spline has several points with the same normal where the
+surface may have only one. The signs of K of these points cancel in pairs, except for one point.
 
-A patch has at most one point with a given normal. So if two samples of one normal coincide after
-they were moved, at least one of them has left its patch. Only normals with such samples are
-examined.
+A patch has at most one point with a given normal. If two samples with the same normal coincide
+after they were moved, at least one of them has therefore left its patch. Only normals with such
+samples are examined.
 """
 
 import numpy as np

@@ -28,8 +28,8 @@ FEWEST_CELLS = 4
 # A piece counts as degenerate, and gets no samples, if its size is less than this times the largest
 # size.
 NO_SIZE = 1e-6
-# Pieces whose Gaussian images have less than this solid angle have no samples at prescribed
-# normals.
+# Without a proof, pieces whose Gaussian images have at most this solid angle get no samples at
+# prescribed normals.
 LEAST_IMAGE = 1e-9
 SUMS = ("patches", "apexes")
 LARGEST = ("fit_distance", "fit_angle")

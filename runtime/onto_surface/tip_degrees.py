@@ -106,7 +106,7 @@ class Tip(NamedTuple):
         normals = normals[normals.any(axis=1)]
         mean = unit_or_zero(normals.sum(axis=0)[None])
         if not np.abs(rays @ mean[0]).max() > ROUNDING:
-            return None  # a smooth pole, whose opposite meridians have other parameters
+            return None  # smooth, but not a pole: the parameters do not follow opposite meridians
         cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
         # A cap that contains all normals contains the arcs between them only if it is smaller than
         # a half-sphere.

@@ -56,7 +56,8 @@ class Rows(NamedTuple):
 class Target(NamedTuple):
     """For each row: the normal, the required sign of K (0 for any sign), and the resulting sample.
 
-    `state` (n,) is NOT_FOUND or FOUND; only samples that are FOUND are overwritten.
+    `state` (n,) is NOT_FOUND or FOUND. A row is written only when its point is found; all other
+    rows keep their values.
     """
 
     normals: NDArray[np.float64]
