@@ -193,8 +193,9 @@ class BezierTriangle:
 def written_in_groups(quotient: sp.Expr, variables: Sequence[sp.Symbol]) -> sp.Expr:
     """Write a quotient of polynomials with rational coefficients as eq. (12) in the paper.
 
-    Terms of the numerator with equal coefficients are in brackets, largest groups of the highest
-    powers first; the common factor of the denominator precedes it.
+    Terms of the numerator with equal coefficients, up to the sign, are in brackets; terms and
+    brackets are in the order of their highest powers. The common factor of the denominator precedes
+    the quotient.
     """
     above, below = (sp.Poly(x, *variables) for x in sp.fraction(quotient))
     if not all(x.is_Rational for x in (*above.coeffs(), *below.coeffs())):

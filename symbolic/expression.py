@@ -33,11 +33,11 @@ GENERIC = sp.Rational(3, 7), sp.Rational(5, 11), sp.Rational(8, 13)
 
 
 def array_function(h: sp.Expr, domain: Boolean | bool = True) -> str:
-    """Return a Python module whose `evaluate` returns envelope and Hessian of h for many normals.
+    """Return the source of a function `evaluate`: envelope and Hessian of h for many normals.
 
-    Its arguments are the components of unit normals, arrays (k,). It returns whether they are in
-    the domain, the components of the points, and the six entries of the Hessians, as arrays (k,) or
-    constants.
+    The arguments of `evaluate` are the components of unit normals, arrays (k,). It returns whether
+    they are in the domain, the components of the points, and the six entries of the Hessians, as
+    arrays (k,) or constants.
 
     `h` and `domain` are in the real symbols n_x, n_y, n_z. Raises NotImplementedError for functions
     that `math` does not have, and for sums over an index.

@@ -116,7 +116,7 @@ def existing(folder: Path) -> dict[str, str]:
 def formatted(source: str, name: str = "module.py") -> str:
     """Return Python source, formatted by the settings of this project, without unused imports.
 
-    Raises CalledProcessError if ruff is not installed or the source is no Python.
+    Raises CalledProcessError if ruff is not installed or the source is not Python.
     """
     options = ["--config", str(PROJECT), "--no-cache", "--quiet", "--stdin-filename", name, "-"]
     for command in (["check", "--fix-only", "--select", "F401,I001"], ["format"]):

@@ -1,18 +1,19 @@
 """The Gaussian image of a quadratic patch: boundary cones and arcs, solid angle, parabolic lines.
 
 The parabolic lines come from one determinant, whatever the rank of [a b c]. Along the direction
-(t, −s) of the parameter plane p_u, p_v and p − ½ (second-order part) change by
+(t, −s) of the parameter plane, p_u, p_v and the linear part d u + e v of p change by
 
     f1 = t a − s b,     f2 = t b − s c,     f3 = t d − s e,
 
-and one normal n serves a whole line s u + t v + ρ = 0 if and only if it is perpendicular to all
-three. Indeed, n·f1 = n·f2 = 0 makes (A, B, C) a multiple of (s², st, t²), and n·f3 = 0 makes (P, Q)
-a multiple of (s, t), so that n·p_u = 0 and n·p_v = 0 are the same equation. The directions are
-hence the roots of the binary cubic det[f1 f2 f3]. If det[a b c] ≠ 0 then f1 × f2 = det[a b c] (s²
-a* + st b* + t² c*). If a, b, c span a plane with normal n0, and λ1 a + λ2 b + λ3 c = 0, the binary
-cubic is λ(s,t) (t n0·d − s n0·e) with λ(s,t) = λ1 s² + λ2 st + λ3 t²: the last factor is the line
-at infinity, with the normal n0, and the other two are lines in fixed directions. If a, b, c are
-multiples of one vector (a graph), the binary cubic vanishes and D(N) is a constant.
+and all points of a line s u + t v + ρ = 0 have the normal n if and only if n is perpendicular to
+all three. Indeed, n·f1 = n·f2 = 0 makes (A, B, C) a multiple of (s², st, t²), and n·f3 = 0 makes
+(P, Q) a multiple of (s, t), so that n·p_u = 0 and n·p_v = 0 are the same equation. The directions
+are hence the roots of the binary cubic det[f1 f2 f3]. If det[a b c] ≠ 0, then f1 × f2 = det[a b c]
+(s² a* + st b* + t² c*) with the dual basis a*, b*, c*. If a, b, c span a plane with normal n0, and
+λ1 a + λ2 b + λ3 c = 0, the binary cubic is λ(s,t) (t n0·d − s n0·e), up to a factor, with λ(s,t) =
+λ1 s² + λ2 st + λ3 t²: the last factor is the line at infinity, with the normal n0, and the other
+two are lines in fixed directions. If a, b, c are multiples of one vector (a graph), the binary
+cubic vanishes and D(N) is a constant.
 """
 
 from itertools import product

@@ -191,7 +191,7 @@ def AT_POLE() -> Parts:
     return Parts(inputs=known, outputs=[(z.name, solution[z]) for z in X])
 
 
-# At a pole with the parameters u around it and r = 0, the surface is a graph h over its tangent
+# At a pole r = 0, around which the parameter u runs, the surface is a graph h over its tangent
 # plane with coordinates q1, q2. As r → 0, q_u, q_uu and h_r, h_ur vanish like r, and h_u, h_uu like
 # r².
 

@@ -127,7 +127,7 @@ def row_shapes(formula: Formula) -> tuple[dict[str, tuple[int, ...]], dict[str, 
     """Return the shape of a row of each array of `array_function`: for inputs, and for outputs.
 
     Raises ValueError for a formula that takes or returns all vectors of a patch or an arc, since
-    these are no array.
+    these are not in an array.
     """
     inputs = arguments(formula)
     outputs = {g[0] if g else x[0].name: x for g, x in grouped(formula.outputs)}

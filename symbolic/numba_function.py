@@ -40,7 +40,8 @@ def compiled(formula: Formula) -> CompiledFormula:
     TypeError
         For anything but a Formula.
     ValueError
-        If the formula uses a name of its loop, such as "row".
+        If the formula uses a name of its loop, such as "row", or takes or returns all vectors of a
+        patch or an arc.
     NotImplementedError
         For a function of SymPy that cannot be printed.
 

@@ -505,7 +505,7 @@ def _float(constant: Any) -> Any:  # noqa: ANN401
 
 
 def _bits(number: Any) -> int:  # noqa: ANN401
-    """Return the bits of a numerator or denominator, or the modulus of a float's exponent."""
+    """Return the most bits of numerator and denominator, or the modulus of a float's exponent."""
     if number.is_Rational and number.is_finite:
         return max(int(number.p).bit_length(), int(number.q).bit_length())
     if number.is_Float:
