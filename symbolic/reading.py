@@ -22,7 +22,7 @@ from sympy.logic.boolalg import Boolean, BooleanAtom, BooleanFunction
 LONGEST_TEXT = 20_000  # characters
 DEEPEST_TREE = 200
 MOST_STEPS = 10_000  # literals, names, operations and calls; those in sums count for each term
-MOST_BITS = 2048  # twice what a float64 can hold
+MOST_BITS = 2048  # twice the largest binary exponent of a float64
 MOST_PLAIN_BITS = 32  # bits of numbers whose roots and functions SymPy may evaluate exactly
 MOST_EXACT = 30  # numbers and operations in a constant that is not a float
 

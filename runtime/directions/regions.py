@@ -66,7 +66,7 @@ class Condition(Protocol):
 
 
 class Reach:
-    """Where samples may lie: by the angles of normals to axes, and by the distance from edges.
+    """Where samples may lie: conditions on normals, on the distance from edges, and on free rays.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ class Reach:
 
     @property
     def _rays(self) -> list[tuple[NDArray[np.float64] | None, float]]:
-        """The axis and the length of rays that have to be free; None for those along normals."""
+        """The axes and the lengths of rays that have to be free; for rays along normals, None."""
         found = list[tuple[NDArray[np.float64] | None, float]]()
         found += [] if self._along is None else [(self._along, math.inf)]
         found += [] if self._clearance is None else [(None, self._clearance)]

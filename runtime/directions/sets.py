@@ -122,8 +122,8 @@ def fibonacci(count: int) -> NDArray[np.float64]:
 def healpix(nside: int) -> NDArray[np.float64]:
     """Return the centres of the pixels of HEALPix, ring by ring from +z to −z.
 
-    Pixels have equal areas, and their centres lie on rings of equal latitude. Those on the equator
-    and on some meridians lie in planes of symmetry.
+    Pixels have equal areas, and their centres lie on rings of equal latitude. The centres on the
+    equator and on some meridians lie in planes of symmetry.
 
     Parameters
     ----------

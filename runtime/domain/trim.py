@@ -127,8 +127,8 @@ class Trim:
         (m, n) bool array
             True for each cell that the boundary of a polygon, or another known one, may intersect.
         (m, n) bool array
-            True for each other cell in which a predicate may change its value. These are all cells
-            whose centres are inside the known boundaries, since those of predicates are unknown.
+            True for each other cell in which a predicate may change its value: for all cells whose
+            centres are inside the known boundaries.
 
         Examples
         --------

@@ -76,7 +76,7 @@ class Parameters:
         return cls(chart.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
 
     def solve(self, target: Target, numbers: Indices, few: int) -> Indices:
-        """Do Newton steps until at most `few` rows are unsolved; return the indices of these.
+        """Do Newton steps until at most `few` rows are unsolved; return the indices of these rows.
 
         `numbers` are the indices of the rows to solve; the steps start from target.uv. Rows that
         are unsolved after MOST_STEPS steps are given up, and not returned.

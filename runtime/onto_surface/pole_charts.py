@@ -145,9 +145,9 @@ def pole_charts(surface: Surface, cells: tuple[int, int]) -> list[PoleChart]:
 def near_poles(
     charts: list[PoleChart], scale: float, uv: Array
 ) -> Iterator[tuple[Indices, Array, Array, Array]]:
-    """For each chart that is needed, yield the indices (k,) of the rows of `uv` that need it.
+    """Yield the rows of `uv` at which each chart evaluates fields; charts without rows are omitted.
 
-    With the indices come the unit normals (k, 3), K (k,) and H (k,) at these parameters.
+    A result has the indices (k,) of the rows, and unit normals (k, 3), K (k,) and H (k,) there.
     """
     for chart in charts:
         rows = np.flatnonzero(chart.next_to(uv))

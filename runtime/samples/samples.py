@@ -87,7 +87,8 @@ class Samples(SampleArrays, Methods):
         face. None for other samples.
     other_normals : (N, 3) float64 array or None
         With ``edges=True``: unit normals of the second face of a sample on a sharp edge; NaN for
-        others. Its `normals`, `uv`, curvatures and `face_index` are those of the first face.
+        other samples. On an edge `normals`, `uv`, curvatures and `face_index` are those of the
+        first face.
     other_uv : (N, 2) float64 array or None
         With ``edges=True``: parameters on the second face of a sharp edge; NaN for other samples.
     other_face_index : (N,) int64 array or None

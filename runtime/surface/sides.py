@@ -85,8 +85,8 @@ class _Sides:
     `lines(axis, end)` returns k points on a side, and k points on each of the two parameter lines
     next to it: an array (3, k, 3). The side is u = const for axis 0, v = const for axis 1, at the
     lower bound for end 0 and the upper one for end 1. `repeated` is True if closed lines repeat
-    their first point. Points within a distance of `same` count as equal; `rounding` is the rounding
-    error of a linear combination of a few points.
+    their first point. `kink` is KINK or KINK_OF_DATA. Points within a distance of `same` count as
+    equal; `rounding` is the rounding error of a linear combination of a few points.
     """
 
     lines: Callable[[int, int], Array]
