@@ -26,7 +26,7 @@ MOST_ENTRIES = 1 << 24
 # units of a cell, the second one in units in the last place of the largest coordinate.
 MARGIN, MARGIN_IN_ROUNDINGS = 1e-9, 16.0
 POINTS_AT_A_TIME = 1 << 14
-# The largest number of times that a loop may run around a periodic direction.
+# The largest distance of a point of a loop from the bounds of a periodic parameter, in periods.
 MOST_PERIODS = 100
 # The number of pairs of a box and a segment in one batch.
 PAIRS_AT_A_TIME = 1 << 20

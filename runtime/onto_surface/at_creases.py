@@ -48,7 +48,7 @@ STEPS, MANY = 5, 4096
 RISES = np.indices((2, 2, 2, 2)).reshape(4, -1).T == 1
 DEGREES = 1.0 - (np.roll(RISES, 1, axis=1) != RISES).sum(axis=1) / 2.0
 PRODUCTS_AT_A_TIME = 1 << 21
-# The positions of the second derivatives in jets and Taylor polynomials.
+# The positions of the second derivatives by uu and vv in jets and Taylor polynomials.
 SECOND = (3, 5)
 
 

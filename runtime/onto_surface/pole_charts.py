@@ -64,7 +64,10 @@ class PoleChart:
         return 2.0 * math.pi / (high - low)
 
     def near(self, uv: Array) -> Flags:
-        """Return a mask (k,) of the parameters (k, 2) within POLE_CELLS cells of the pole."""
+        """Return a mask (k,) of the parameters (k, 2) within POLE_CELLS cells of the pole.
+
+        At most half of the cells towards the opposite side belong to the pole.
+        """
         cells = min(POLE_CELLS, self.cells // 2)
         return self._distances(uv) < cells * self.cell
 

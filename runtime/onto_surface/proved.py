@@ -45,7 +45,7 @@ from .pole_charts import near_poles, pole_charts
 from .reach import with_conditions
 
 PLACES_AT_A_TIME = 1 << 14
-# Curvatures at a collapsed side are evaluated at this distance from it, relative to the domain.
+# Curvatures at a collapsed side are evaluated at this part of the way to the centre of the domain.
 BESIDE = 1e-5
 # The column of solutions that has the code of their component, if not all are regular points.
 CODE = 6

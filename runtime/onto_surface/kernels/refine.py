@@ -29,7 +29,8 @@ NOT_FOUND, FOUND = 0, 1
 LONGEST_STEP, FARTHEST = 1.0, 3.0
 # The part of a step that is undone if the step does not reduce the angle.
 TAKEN_BACK = 0.5
-# The iteration fails if the squared sine of the angle is not below this part of the previous one.
+# The iteration stagnates if the squared sine of the angle is above this part of the least one so
+# far; an angle up to the noise is then accepted.
 SLOW = 0.25
 OPPOSITE = 4.0  # in place of the squared sine of angles above 90 degrees
 
@@ -140,9 +141,10 @@ def newton(jets, count, rows, target, box, size, tolerance, noise):
     """Finish the first `count` rows or move them by a step; return the number of unfinished rows.
 
     A row is finished if the squared sine of the angle between its normal and that of the surface is
-    at most `tolerance`, or if the squared sine is at most `noise` and does not decrease. The point
-    and the curvatures of a finished row are written. `size`, a power of two, scales the surface to
-    cells of about the size 1.
+    at most `tolerance`, or if it is at most `noise` and the iteration stagnates (see SLOW) or stays
+    at the same parameters. The point and the curvatures of a finished row are written. A row is
+    given up if it stays at the same parameters with a larger angle, or goes farther than FARTHEST.
+    `size`, a power of two, scales the surface to cells of about the size 1.
     """
     u0, u1, v0, v1 = box.ends
     du, dv = box.cell
