@@ -29,8 +29,9 @@ def wholes(formula: Formula, formulas: Iterable[Formula]) -> list[str]:
     """Return the names of those `formulas` that contain `formula`.
 
     A formula counts as containing `formula` if it has further definitions, if all definitions that
-    both have are equal, and if more than half of the outputs of `formula` are among its
-    definitions. Not all outputs are required, since `compose` drops outputs that are not needed.
+    both have are equal, if none of its inputs is defined by `formula`, and if more than half of the
+    outputs of `formula` are among its definitions. Not all outputs are required, since `compose`
+    drops outputs that are not needed.
     """
     mine = dict(formula.definitions)
 
