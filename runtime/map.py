@@ -308,7 +308,7 @@ class GaussMap(Methods):
         proved = all(isinstance(x, ProvedSurface) for x in self._pieces)
         wanted = checked_fields(fields, on_surface, proved, given=True)
         memory = {} if out is None else out.arrays()
-        # Double precision distinguishes points of creases from other points.
+        # Points of creases are compared with other points in double precision.
         more = wanted if self._creases is None else [*dict.fromkeys([*wanted, *OF_CREASES])]
         given = number if self._creases is None else np.dtype(np.float64)
         pieces = [x.used(given, threads, memory).within(reach) for x in self._pieces]

@@ -123,8 +123,8 @@ def read(text: str, symbols: Mapping[str, Any] | None = None, exact: bool = Fals
 
     Names are first looked up in `symbols`; unknown names become symbols. `^` is a power. With
     `exact`, decimal numbers are fractions, and no number is rounded. Raises ReadingError, with the
-    reason, for anything but real mathematics, for functions that are not in `FUNCTIONS`, and for
-    expressions that are too large.
+    reason, for anything but real mathematics, for functions that are neither in `FUNCTIONS` nor in
+    `PARTED`, and for expressions that are too large.
     """
     try:
         expression = _Reader(text, symbols or {}, exact).read()
@@ -464,7 +464,11 @@ class _Reader:
         return (sp.Add if name == "Sum" else sp.Mul)(*terms)
 
     def _bounded(self, value: Any) -> Any:  # noqa: ANN401
-        """Return the value, as a float if it is a long constant; ReadingError if it is not real."""
+        """Return a value, as a float if it is a long constant or a function of constants.
+
+        With `exact`, ReadingError is raised for a long constant. It is always raised for a constant
+        that is too large, not finite or not real.
+        """
         if isinstance(value, Boolean) or not value.is_number:
             return value
         rounded = _float(value)

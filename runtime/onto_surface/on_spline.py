@@ -292,7 +292,7 @@ class OnSpline(OnPatches):
 
     @property
     def knows_jets(self) -> bool:
-        """Whether derivatives are exact, and not finite differences."""
+        """Whether derivatives come from formulas, not from a user's callable or differences."""
         return True
 
     def jets(self, u: Array, v: Array) -> Array:

@@ -100,9 +100,9 @@ class OnSurface(OnSpline):
         """Areas and signed solid angles of the patches, as `Spline.measure`.
 
         The solid angle of a cell is the integral of K of the surface, computed at the Gauss points
-        of the cell; each patch gets a fourth of it. For surfaces whose derivatives are finite
-        differences, which take many evaluations, the solid angles are those of the spline. Both
-        arrays are cached with the spline.
+        of the cell; each patch gets a fourth of it. For surfaces whose derivatives do not come from
+        formulas, which take many evaluations, the solid angles are those of the spline. Both arrays
+        are cached with the spline.
         """
         return kept(self.spline, "measure of the surface", self._measured)
 
@@ -239,7 +239,7 @@ class OnSurface(OnSpline):
 
     @property
     def knows_jets(self) -> bool:
-        """Whether derivatives are exact, not finite differences of a user's function."""
+        """Whether derivatives come from formulas, not from a user's callable or differences."""
         function = None if self.surface is None else self.surface.function
         return isinstance(function, Differentiable) and function.differentiable
 

@@ -187,7 +187,8 @@ class ProvedSurface:
     def with_fit(self, samples: Samples, density: float | None = None) -> Samples:
         """Return samples with the spline of the surface, and with a report that describes its fit.
 
-        `density` is the number of normals per steradian in the report, by default S / 4π.
+        `density` is the number of normals per steradian in the report, by default S / 4π for S
+        prescribed normals.
         """
         geometry, known, arrays = self.fitted, samples.report, samples.arrays()
         report = geometry.report(

@@ -85,7 +85,7 @@ def cells_of_piece(
     """Return the numbers of cells (m, n) of a piece.
 
     They are the numbers of `cells` of the whole surface, times the share of the domain that the
-    piece has along u and along v.
+    piece has along u and along v, rounded up; they are at least FEWEST_CELLS.
     """
     if cells is None:
         return None

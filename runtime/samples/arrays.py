@@ -119,10 +119,10 @@ class SampleArrays:
         Returns
         -------
         Samples
-            The rows of all parts, in order. The report counts all of them, adds `proved`, and joins
-            `undecided`; other entries that differ between the parts are None, or "several surfaces"
-            for their labels. The spline, the surface and `offset_of` are kept if they are the same
-            for all parts.
+            The rows of all parts, in order. The report counts all of them, and has the sum of
+            `proved` and the boxes `undecided` of all parts. Its label is "several surfaces" if the
+            labels of the parts differ; other entries that differ are None. The spline, the surface
+            and `offset_of` are kept if they are the same for all parts.
 
         Raises
         ------

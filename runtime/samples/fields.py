@@ -203,9 +203,9 @@ def checked_fields(
 
     The flags describe the samples: on the surface (`surface`), at prescribed normals (`given`), of
     a proved search (`proved`; None if unknown), on a grid (`grid`), of a CAD part (`part`), on its
-    sharp edges (`edges`). Raises UnknownNameError for an unknown name, and InputError for anything
-    but a tuple of names, for no names, for a repeated name, and for an attribute that is computed
-    from fields.
+    sharp edges (`edges`). Raises UnknownNameError for an unknown name. Raises InputError for
+    anything but several names, for no names, for a repeated name, for a field that such samples
+    lack, and for an attribute that is computed from fields.
     """
     from ..base.checks import known_name, listed
 

@@ -312,7 +312,7 @@ def warn_of(
 
 
 def _unseen(report: SamplingReport) -> list[str]:
-    """Return reasons for a warning: parts of the surface that no set of normals samples."""
+    """Return reasons for a warning: parts of the surface have no samples, or there are none."""
     share = report.developable_share or 0.0
     if share > WORTH_A_WARNING:
         return [
