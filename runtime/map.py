@@ -40,10 +40,9 @@ class GaussMap(Methods):
 
     The surface is indexed when the map is made. It is fitted with ``on="spline"``, if its points
     cannot be proved, or when its spline is read. After that a query of one normal takes a fraction
-    of a millisecond.
-    Results do not depend on earlier queries, nor on the number of threads; several threads may
-    query one map at once, and maps can be pickled. `sample` with `normals` gives the same samples,
-    and caches the maps of the last eight surfaces.
+    of a millisecond. Results do not depend on earlier queries, nor on the number of threads;
+    several threads may query one map at once, and maps can be pickled. `sample` with `normals`
+    gives the same samples, and caches the maps of the last eight surfaces.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Faces of CAD parts: surfaces of revolution, offset surfaces, and normals of tori.
+"""Faces of CAD parts: surfaces of revolution, offset surfaces, and normals of tori and cones.
 
 Faces of other kinds are rational surfaces, or surfaces of the catalogue moved in space.
 """

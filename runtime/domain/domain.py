@@ -52,8 +52,8 @@ def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
     """Return the boundary conditions that `periodic` means, and whether open sides are assumed.
 
     The open sides of a parameter are assumed if its entry in `periodic` is False; they are declared
-    if the entry is "open".
-    Raises InputError if the conditions are unknown or contradict each other.
+    if the entry is "open". Raises InputError if the conditions are unknown or contradict each
+    other.
     """
     boundary = checked_sides(periodic)
     for name, other, ends, around in (("u", "v", *boundary), ("v", "u", *boundary[::-1])):

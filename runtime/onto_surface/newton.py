@@ -99,10 +99,10 @@ def refine(surface: Surface, spline: Spline, target: Target, threads: int | None
     A sample is found if Newton's method leads to a point of the surface whose normal is the
     prescribed one, up to NORMAL_ERROR or up to the noise of the surface where the method stagnates,
     and where K has the sign of target.signs; next to a pole the sign does not matter, since the
-    spline has folds there. The parameters, point and curvatures of
-    such a sample are overwritten. All other samples stay those of the spline: samples at parabolic
-    and singular points, and samples whose solution is outside the domain or more than three cells
-    away. `target.state` says of each sample whether it was found.
+    spline has folds there. The parameters, point and curvatures of such a sample are overwritten.
+    All other samples stay those of the spline: samples at parabolic and singular points, and
+    samples whose solution is outside the domain or more than three cells away. `target.state` says
+    of each sample whether it was found.
     """
     target.state[:] = NOT_FOUND
     charts = pole_charts(surface, spline.cells)

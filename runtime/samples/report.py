@@ -36,7 +36,8 @@ class UndecidedNormal(NamedTuple):
     normal : int
         The row of the normal among the prescribed ones.
     box : (u0, u1, v0, v1) of float
-        The rectangle of parameters. All points outside of the boxes of a report are known.
+        The rectangle of parameters. Where points are proved, all points outside of the boxes of a
+        report are known.
     kind : {"isolated", "curve", "open", "unmoved"}
         "isolated": a point where K is 0, or several that cannot be told apart. "curve": a curve or
         a region with this normal, such as a ruling of a cylinder. "open": it is unknown whether the

@@ -33,8 +33,8 @@ ROUNDING = 64.0
 def traced_tape(function: Function, domain: Domain) -> Tape | None:
     """Return the tape of a callable f(u, v) → (..., 3); None if it cannot be traced.
 
-    A callable cannot be traced if it depends on comparisons, single precision, or variables other
-    than u and v.
+    A callable cannot be traced if it depends on comparisons or single precision, or if another call
+    returns other points.
     """
     for called in (function, _with_object_arrays(function)):
         try:
