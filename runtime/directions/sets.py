@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.icosahedron import FACE_RADIUS
-from ..base import compiling  # noqa: F401 - announces compilation on terminals
 from ..base.checks import whole_number
 from ..base.errors import InputError, in_memory
 from ..base.extras import from_extra

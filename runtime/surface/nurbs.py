@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 
-from ..base import compiling  # noqa: F401 - announces compilation on terminals
 from ..base.aliases import Array
 from ..base.errors import InputError
 from ..base.tolerances import SAME_PARAMETER

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from ...generated.surface_tapes import TAPES
 from ...generated.surfaces import CATALOGUE as _GENERATED
-from ..base import compiling  # noqa: F401 - announces compilation on terminals
 from ..base.advice import file_advice
 from ..base.checks import as_float, known_name
 from ..base.errors import InputError, UnknownNameError, shown

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated import elementary as codes
-from ..base import compiling  # noqa: F401 - announces compilation on terminals
 from ..base.aliases import Array
 from ..domain.domain import Interval
 from .kernels.balls import BALL, bounds_of_boxes

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.differences import FIRST
-from ...runtime.base import compiling  # noqa: F401 - announces compilation on terminals
 from ...runtime.domain.domain import Domain
 from ...runtime.surface.derivatives import Differentiable, nodes_between, shifts_inside, weighted
 from ...runtime.surface.moved import Moved
