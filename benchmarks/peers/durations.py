@@ -51,11 +51,11 @@ the fit of the spline included; more than {stream:,} points come in chunks (`gm.
 For its first 10⁴ points, a new process takes {warm}, imports and loading of machine code included
 ([details](install.md#compiled-kernels)).
 
-A grid of parameters is faster, if there is a closed form: {ratio} times at {largest:,} points. Use
-gaussmap for what a grid of parameters does not have: the points that have given normals, each
-exactly once; density that follows curvature, and guarantees for gaps and angles; surfaces without a
-closed form (functions, data, NURBS, CAD files); offsets, silhouettes and meshes of the same
-samples.
+If there is a closed form, a grid of parameters is faster: {ratio} times as fast as points at
+normals, for {largest:,} points. Use gaussmap for what a grid of parameters does not have: the
+points that have given normals, each exactly once; density that follows curvature, and guarantees
+for gaps and angles; surfaces without a closed form (functions, data, NURBS, CAD files); offsets,
+silhouettes and meshes of the same samples.
 
 """
 

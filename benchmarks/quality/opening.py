@@ -36,9 +36,8 @@ other tools: below 1, gaussmap is better.
   better than all others in {balanced} comparisons, **aligned** in {aligned}. The last column names
   the tools that are best where neither density is.
 - **Take another tool where distances count**: for the largest gap in space **balanced** is best in
-  {gaps} comparisons, **aligned** in {gaps_aligned}. Farthest points and Poisson disks are more
-  even, triangles of Gmsh have a better shape, and Open CASCADE meshes solids made of planes,
-  cylinders and tori with a row of triangles for each angle.
+  {gaps} comparisons, **aligned** in {gaps_aligned}. Triangles of Gmsh have a better shape, and Open
+  CASCADE meshes solids made of planes, cylinders and tori with a row of triangles for each angle.
 - **Take another tool where time counts**: **balanced** is {slow} as fast as Poisson disks, and
   faster in {fast} of {timed} comparisons.
 """
