@@ -1,7 +1,7 @@
 """Draw the animation at the top of the README and of the site, light and dark.
 
-Uniform normals on the unit sphere leave it and land on the points of a torus that have them: each
-normal on two points. One normal and its points are marked in the end.
+Dots leave uniform normals on the unit sphere, and land on the points of a torus that have these
+normals: two dots for each normal. At the end, one normal and its points are marked.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ RADIUS, SCALE = 1.2, 1.35  # inches for one unit of length
 MOVE, HOLD = 80, (1800, 2000, 4000)
 # The frames in motion, and the share of them after which the last point leaves.
 FRAMES, LATEST = 56, 0.45
-COLOURS = 44  # chosen for the picture, beside those that must be exact
+COLOURS = 44  # the number of frequent colours, besides those that must be exact
 TEXTS = (
     f"{NORMALS:,} normals $n$, uniform on the sphere",
     r"the gradient of the support function takes them to points: $x = \nabla h(n)$",
@@ -45,7 +45,7 @@ TEXTS = (
 
 
 class Actors(NamedTuple):
-    """What moves: places (N, 2) of normals and points, colours, and when each leaves."""
+    """The moving dots: positions (N, 2) of normals and points, colours, and when each leaves."""
 
     normals: Floats
     points: Floats
@@ -83,7 +83,7 @@ def draw(light: Path, in_dark: Path) -> None:
 
 
 def actors_of(samples: gm.Samples, scene: Scene, visible: Any) -> Actors:  # noqa: ANN401
-    """Return where samples leave and land; from the right of the sphere to the left."""
+    """Return the dots for samples; the dots on the right of the sphere leave first."""
     seen = samples.normals @ scene.view.T
     land = scene.seen(samples.points)
     start = (1.0 - seen[:, 0]) / 2 * LATEST
@@ -114,7 +114,7 @@ def limits(axes: Any) -> None:  # noqa: ANN401
 
 
 def stage_of(scene: Scene) -> Floats:
-    """Return the picture of what does not move, the torus and the globe, as pixels."""
+    """Return the pixels of the background, the torus and the globe."""
     from matplotlib.transforms import Affine2D
 
     figure, axes = panel()
@@ -153,7 +153,7 @@ def frame(
     axes.text(
         0.0, HEIGHT / 2 - 0.22, text, ha="center", va="center", fontsize=12.5, color=INK, zorder=9
     )
-    # Where the normals were, small dots stay.
+    # Small dots mark the normals after they have left.
     axes.scatter(*actors.normals[actors.front].T, s=2.0, color=PALE, linewidths=0.0, zorder=4)
     places, colours = moved(actors, moment)
     shown = actors.order[colours[actors.order, 3] > 0.02]
@@ -169,7 +169,7 @@ def frame(
 
 
 def moved(actors: Actors, moment: float) -> tuple[Floats, Floats]:
-    """Return places (N, 2) and colours (N, 4) at a moment; what is behind something is faint."""
+    """Return positions (N, 2) and colours (N, 4) at a moment; hidden dots are transparent."""
     way = np.clip((moment - actors.start) / (1.0 - LATEST), 0.0, 1.0)[:, None]
     way = way * way * (3.0 - 2.0 * way)
     places = (1.0 - way) * actors.normals + way * actors.points
@@ -179,7 +179,7 @@ def moved(actors: Actors, moment: float) -> tuple[Floats, Floats]:
 
 
 def palette_of(pictures: list[Image.Image], colours: int) -> NDArray[np.uint8]:
-    """Return a palette (k, 3) for all pictures: this many frequent colours, and some exact ones."""
+    """Return a palette (k, 3) for all pictures: `colours` frequent colours, and some exact ones."""
     together = np.concatenate([np.asarray(picture) for picture in pictures])
     chosen = Image.fromarray(together).quantize(colours, method=Image.Quantize.MEDIANCUT)
     exact = [to_rgb(name) for name in ("white", MARK, INK, ELLIPTIC, HYPERBOLIC)]
@@ -188,7 +188,7 @@ def palette_of(pictures: list[Image.Image], colours: int) -> NDArray[np.uint8]:
 
 
 def reduced(picture: Image.Image, palette: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Return the nearest colours of a palette, by their numbers; Pillow takes other ones."""
+    """Return the indices of the nearest colours of a palette; Pillow's own are less near."""
     pixels = np.asarray(picture)
     found, which = np.unique(pixels.reshape(-1, 3), axis=0, return_inverse=True)
     nearest = np.asarray(KDTree(palette).query(found)[1]).astype(np.uint8)
@@ -196,7 +196,7 @@ def reduced(picture: Image.Image, palette: NDArray[np.uint8]) -> NDArray[np.uint
 
 
 def with_palette(numbers: NDArray[np.uint8], palette: NDArray[np.uint8]) -> Image.Image:
-    """Return the picture that has the colours of a palette by their numbers."""
+    """Return the picture with the given colours of a palette, by their indices."""
     image = Image.fromarray(numbers, mode="P")
     image.putpalette(palette.ravel().tolist())
     return image

@@ -1,4 +1,4 @@
-"""How Sphinx builds the site: `make docs`. Words are in the pages, code is in _sphinx/."""
+"""The configuration of Sphinx for the site (`make docs`); its extensions are in _sphinx/."""
 
 import re
 import shutil
@@ -14,7 +14,7 @@ from sphinx.errors import ConfigError
 from sphinx.ext import autosummary
 
 HERE = Path(__file__).parent
-# Cells of pages call these; without one, a cell would wait for what never comes.
+# Cells of pages call these commands. Without one of them, a cell would wait for a file forever.
 for command in ("dask", "gaussmap"):
     if shutil.which(command) is None:
         raise ConfigError(
@@ -23,7 +23,8 @@ for command in ("dask", "gaussmap"):
         )
 sys.path.append(str(HERE / "_sphinx"))
 
-# Where the classes are that types in docstrings name; those below are not public, but returned.
+# The modules of the classes that types in docstrings name. Functions return some classes that are
+# not public.
 CLASSES = {
     "gaussmap.curves": dir(gaussmap.curves),
     "gaussmap.gauss_map": dir(gaussmap.gauss_map),
@@ -49,13 +50,13 @@ extensions = [
     "formula_pages",
     "mathml",
 ]
-# Scripts beside the pages write them; the notebooks of the gallery are made of the scripts there.
+# Python files are not pages: they write pages, figures and the notebooks of the gallery.
 source_suffix = {".rst": "restructuredtext", ".md": "myst-nb", ".ipynb": "myst-nb"}
 templates_path = ["_templates"]
 exclude_patterns = ["_*", "**.py", "**.tmp"]
 
-# Every reference has a target. Docstrings have code between single backquotes: what is public is a
-# link there, the rest is code.
+# Every reference must have a target. In docstrings, a public name between single backquotes becomes
+# a link, other text becomes code.
 nitpicky = True
 nitpick_ignore_regex = [("py:obj", ".*")]
 default_role = "py:obj"
@@ -74,7 +75,7 @@ nb_execution_in_temp = True
 nb_merge_streams = True
 
 # --- the reference ---
-# Sentences do not end there.
+# Sentences do not end after these abbreviations.
 autosummary.WELL_KNOWN_ABBREVIATIONS += ("Sect.", "Sects.", "eq.", "eqs.", "Fig.", "Figs.")
 # Docstrings that formulas inherit from SymPy have sections of their own.
 warnings.filterwarnings("ignore", message="Unknown section Explanation", module="numpydoc")
@@ -84,7 +85,8 @@ autodoc_preserve_defaults = True
 autodoc_typehints = "none"  # docstrings have the types
 numpydoc_show_class_members = False  # the template of classes lists them
 numpydoc_xref_param_type = True
-# Types that are classes of gaussmap are links; those of Python and NumPy would lead to the network.
+# Classes of gaussmap in types become links, those of Python and NumPy do not: their pages are not
+# local.
 numpydoc_xref_ignore = "all"
 numpydoc_xref_aliases = {name: name for name in DEFAULT_LINKS} | {
     name: f"{space}.{name}"

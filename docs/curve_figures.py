@@ -18,12 +18,12 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 t = sp.Symbol("t", real=True)
-# A circle with one sharp corner and two concave arcs next to it, in polar coordinates.
+# A circle with one narrow bump and two concave arcs next to it, in polar coordinates.
 RADIUS = 1 + sp.sin(2 * t) / 6 + sp.Rational(4, 5) * sp.exp(24 * (sp.cos(t) - 1))
 POSITION = (RADIUS * sp.cos(t), RADIUS * sp.sin(t))
 DROP = gm.curves.Curve.from_sympy(POSITION, t, (sp.S.Zero, 2 * sp.pi), True, name="drop")
 ROWS = sp.lambdify(t, [sp.diff(x, t, k) for k in range(3) for x in POSITION], "numpy", cse=True)
-PIECES = 4096  # so that the error of the spline is nothing beside that of the polygons
+PIECES = 4096  # so that the error of the spline is far below that of the polygons
 DENSE = 40_000  # parameters at which curve and polygon are compared
 NORMALS = 24
 EVERY = 3  # every third point is numbered
@@ -44,7 +44,7 @@ def by_parameter(count: int) -> Floats:
 
 
 def by_normals(count: int) -> Floats:
-    """Return the parameters of about `count` points with uniform normals, and the first again."""
+    """Return the parameters of about `count` points with uniform normals, then the first again."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", gm.GaussmapWarning)
         found = gm.curves.sample(DROP, count=count, pieces=PIECES).parameters
@@ -68,7 +68,7 @@ def figure_4() -> tuple[Figure, str]:
 
 
 def draw_normals(axes: Axes, normals: Floats, negative: Floats) -> None:
-    """Draw unit normals, marked orange where one belongs to a point with κ < 0."""
+    """Draw unit normals, with an orange mark on the `negative` ones, of points with κ < 0."""
     segments(axes, np.zeros_like(normals), normals, colors=NO_SAMPLE, linewidths=0.6)
     axes.scatter(0.0, 0.0, s=8, color=INK, linewidths=0, zorder=3)
     draw_curve(axes, gm.directions.circle(SMOOTH), closed=True)
@@ -92,7 +92,7 @@ def draw_samples(axes: Axes, samples: gm.curves.CurveSamples) -> None:
 
 
 def caption_4(samples: gm.curves.CurveSamples) -> str:
-    """Return the caption, with the numbers of points that a normal has."""
+    """Return the caption of Fig. 4, with the numbers of points of a normal."""
     points = np.bincount(samples.normal_index, minlength=NORMALS)
     counts = listed(f"{(points == k).sum()} have {k}" for k in np.unique(points))
     return (
@@ -131,7 +131,7 @@ def figure_5() -> tuple[Figure, str]:
 
 
 def measured(places: Floats) -> str:
-    """Return how far the polygon through points is from the curve, and how it is turned."""
+    """Return the largest distance and angle between the curve and the polygon, as a text."""
     dense, vertices = np.linspace(places[0], places[-1], DENSE), derivatives(places)[0]
     point, tangent, _ = derivatives(dense)
     edge = np.clip(np.searchsorted(places, dense) - 1, 0, len(places) - 2)
@@ -174,7 +174,7 @@ def dots(axes: Axes, points: Floats, numbered: Floats, colour: str) -> None:
 
 
 def labels(axes: Axes, points: Floats, directions: Floats, indices: NDArray[np.int64]) -> None:
-    """Write the numbers of numbered normals beside points (k, 2), on the sides of unit vectors."""
+    """Write the numbers of normals beside points (k, 2), in the directions of unit vectors."""
     for point, direction, index in zip(points, directions, indices, strict=True):
         axes.annotate(
             str(index // EVERY + 1), point, xytext=8 * direction, textcoords="offset points",

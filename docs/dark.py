@@ -11,15 +11,15 @@ from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
 BACKGROUND = "#0d1117"  # of dark pages of GitHub
-# Hues turned by 180°: the reflection of colours at the greys that have their luminance, with the
-# weights of the colours in the luminance that the filter hue-rotate of CSS has.
+# The weights of red, green and blue in the luminance, as in the CSS filter hue-rotate. A colour is
+# reflected at the grey of its luminance, which turns its hue by 180°.
 LUMINANCE = np.array([0.213, 0.715, 0.072])
 
 
 def dark(colours: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Return the colours (k, 3) of the dark variant of a picture with white ground.
 
-    White becomes the background, black white. Marks have the same colour in both.
+    White becomes the background, black becomes white, and marks keep their colour.
     """
     opposite = 1.0 - colours / 255.0
     turned = np.clip(2.0 * (opposite @ LUMINANCE)[:, None] - opposite, 0.0, 1.0)

@@ -1,4 +1,4 @@
-"""What the figures are made of: surfaces, points, lines and normals in Matplotlib's plane."""
+"""The elements of figures: surfaces, points, lines and normals, projected to Matplotlib's plane."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ def panels(width: float, height: float, rows: int, columns: int, **room: Any) ->
 
 
 class Picture:
-    """A surface in a panel, and what is drawn on it."""
+    """A panel with a surface, and with points and lines on it."""
 
     def __init__(self, axes: Axes, scene: Scene, title: str = "", shape: float = 1.0) -> None:
-        """Make the panel `shape` times as high as wide, which must be enough."""
+        """Make the panel, whose height is `shape` times its width."""
         self.axes, self.scene, self.shape = axes, scene, shape
         axes.set_title(title, pad=4)
         self.fit(scene.quadrangles.reshape(-1, 3), 0.03)
 
     def fit(self, points: Floats, margin: float) -> None:
-        """Make room for points (N, 3), with a margin in parts of its size."""
+        """Make room for points (N, 3), with a margin relative to the extent of the panel."""
         seen = self.scene.seen(points)[:, :2]
         low, high = seen.min(axis=0), seen.max(axis=0)
         width, height = high - low
@@ -66,7 +66,7 @@ class Picture:
         )  # fmt: skip
 
     def lines(self, lines: list[Floats], hide: bool = True, **style: Any) -> None:  # noqa: ANN401
-        """Draw polylines (…, 3) of the surface; what the surface hides is left out."""
+        """Draw polylines (…, 3) on the surface, without hidden parts unless `hide` is False."""
         pieces = []
         for line in lines:
             seen = self.scene.seen(line)[:, :2]
@@ -80,13 +80,13 @@ class Picture:
         )
 
     def points(self, points: Floats, hide: bool = True, **style: Any) -> None:  # noqa: ANN401
-        """Draw points (N, 3) of the surface; those that it hides are left out."""
+        """Draw points (N, 3) on the surface, without hidden points unless `hide` is False."""
         shown = points[self.scene.visible(points)] if hide else points
         x, y, _ = self.scene.seen(shown).T
         self.axes.scatter(x, y, **{"color": INK, "linewidths": 0.0, "zorder": 5, **style})
 
     def label(self, point: Floats, text: str, away: Floats, gap: float, size: float) -> None:
-        """Write beside a point, on the side that is away from another one."""
+        """Write a text beside a point, on the side opposite to the point `away`."""
         here, there = self.scene.seen(np.stack([point, away]))[:, :2]
         step = (here - there) / max(float(np.linalg.norm(here - there)), 1e-12)
         self.axes.annotate(
@@ -96,7 +96,7 @@ class Picture:
 
 
 class Globe:
-    """The unit sphere in a panel, and what is drawn on it."""
+    """A panel with the unit sphere, and with regions, points and lines on it."""
 
     def __init__(self, axes: Axes, view: Floats, title: str = "") -> None:
         self.axes, self.view = axes, view

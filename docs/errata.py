@@ -21,7 +21,7 @@ from gaussmap.symbolic.spline import box_spline_net, middle, triangles
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface
 from sympy.polys.matrices import DomainMatrix
 
-PAGE = Path(__file__).parent / "_pages" / "errata.md"  # with a place for what is computed
+PAGE = Path(__file__).parent / "_pages" / "errata.md"  # a template for the computed values
 n1, n2, n3 = n = sp.symbols("n_1 n_2 n_3", real=True)
 u, v, tau = sp.symbols("u v tau", real=True)
 x, z, w = sp.symbols("x z w", real=True)
@@ -200,7 +200,10 @@ def composition() -> dict[str, object]:
 
 
 def positive(expression: sp.Expr) -> bool:
-    """Say whether an expression is positive for all n without zeros: it is if it is even in n."""
+    """Say whether an expression is known to be positive for all n without zero components.
+
+    It is if it is even in each component, and positive in the first octant.
+    """
     even = all(sp.simplify(expression - expression.subs(q, -q)) == 0 for q in n)
     octant = {q: sp.Symbol(q.name, positive=True) for q in n}
     return even and sp.simplify(substitute(expression, octant)).is_positive is True
@@ -269,7 +272,7 @@ Ordinates = dict[tuple[Fraction, Fraction], Fraction]
 def box_splines_on(columns: int, lines: int) -> dict[tuple[int, int], Ordinates]:
     """Return the box splines that do not vanish on columns × lines cells, by their centres.
 
-    Each comes with its Bézier ordinates on the domain that are not zero, by place.
+    Each has its Bézier ordinates on the domain, also those that are 0, by position.
     """
     cells = list(product(range(columns), range(lines)))
     places = {middle(p, q) for tile in triangles(cells) for p, q in product(tile, repeat=2)}

@@ -26,7 +26,7 @@ def wrapped(text: str) -> str:
 
 
 def number(x: float) -> str:
-    """Return a number with three digits, small ones with an exponent."""
+    """Return a number with three digits, with an exponent if it is below 0.01 or at least 1,000."""
     if 0.01 <= x < 1000:
         return f"{x:.3g}"
     digits, exponent = f"{x:.2e}".split("e")

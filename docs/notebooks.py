@@ -30,7 +30,7 @@ def notebook(script: Path) -> NotebookNode:
 
 
 def executed(script: Path, folder: Path) -> NotebookNode:
-    """Return the notebook of a script with its outputs; what it writes goes to a folder.
+    """Return the notebook of a script with its outputs; its files are written to a folder.
 
     Raises nbclient's CellExecutionError for the first cell that fails.
     """

@@ -37,13 +37,13 @@ PARTS = 4  # every patch is compared at the barycentric lattice of step 1/PARTS
 FLAT = 0.01  # of the largest |K|
 NEAR = 2.0  # cells
 STEPS = 8  # of Newton's method
-PAGE = Path(__file__).parent / "_pages" / "orders.md"  # with a place for each number and table
+PAGE = Path(__file__).parent / "_pages" / "orders.md"  # a template for numbers and tables
 REASONS = ("flat", "lost", "turned", "outside")  # for which samples are left out
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """What is measured: its title, the order that the paper claims, and the constant of it."""
+    """A measured quantity: title, claimed order, symbol of the constant, and definition."""
 
     title: str
     order: int
@@ -263,7 +263,7 @@ def closed_form(true: TrueSurface, normals: Array, curvature: Array) -> Array | 
 
 @dataclass(frozen=True)
 class Measurement:
-    """What was measured on one surface, grid by grid: `errors` has a row for each quantity."""
+    """The measurements on one surface: `errors` has a row for each quantity, by grid."""
 
     true: TrueSurface
     grids: tuple[int, ...]
@@ -373,7 +373,10 @@ def counts(measurements: Sequence[Measurement]) -> str:
 
 
 def _faster(measurements: Sequence[Measurement]) -> str:
-    """Name the surfaces whose normals are faster than claimed, if they have the stated property."""
+    """Name the surfaces whose normals converge faster than claimed.
+
+    Raises ArithmeticError if third derivatives of one of them are not tangent to it.
+    """
     faster = [
         x.true
         for x in measurements

@@ -1,4 +1,4 @@
-"""What pages of the site call in their first cell: small pictures."""
+"""`prepare`, which pages of the site call in their first cell, for small pictures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COLOURS = 96
 def prepare() -> None:
     """Make figures small."""
     shell: Any = get_ipython()
-    plt.close(plt.figure())  # the backend of notebooks registers its own pictures first
+    plt.close(plt.figure())  # the first figure makes the backend register its own formatter
     shell.display_formatter.formatters["image/png"].for_type(Figure, small_png)
 
 

@@ -21,8 +21,8 @@ from matplotlib.patches import Rectangle
 
 INDICES = ("200", "020", "002", "110", "101", "011")
 LEGS = ((0, 3), (3, 1), (1, 5), (5, 2), (2, 4), (4, 0), (3, 4), (3, 5), (4, 5))  # of the net
-# The edges by their equations: which control points they have, and their colour. With any kind of
-# colour blindness these three differ by at least 30 in CIELAB.
+# The edges by their equations: the indices of their control points, and their colours. With any
+# kind of colour blindness these three colours differ by at least 30 in CIELAB.
 EDGES = {
     "u = 0": ((1, 5, 2), "#000000"),
     "v = 0": ((0, 4, 2), "#009e73"),
@@ -189,7 +189,7 @@ def draw_patch(axes: Axes, patch: Patch, view: Floats, title: str = "") -> Pictu
 
 
 def draw_image(axes: Axes, patch: Patch, view: Floats, title: str) -> None:
-    """Draw the Gaussian image, the arcs round it, and, thin, the cones that they lie on."""
+    """Draw the Gaussian image, its boundary arcs, and thin lines for the cones of these arcs."""
     normals = unit(bezier(patch.control_normals, patch.mesh))
     globe = Globe(axes, view, title)
     globe.region(quadrangles(normals), patch.tints)

@@ -34,7 +34,8 @@ EGG = ParametricSurface(
     domain=SPHERE.domain,
     boundary=SPHERE.boundary,
 )
-# A rotation without zeros: the poles of a sphere and an ellipsoid are too symmetric to show much.
+# A rotation matrix without zeros: otherwise, the symmetry of the sphere and of the ellipsoid would
+# hide errors at their poles.
 ROTATION = np.linalg.qr(np.array([[0.7, 0.3, -0.5], [0.2, 0.8, 0.6], [-0.4, 0.5, 0.9]]))[0]
 # Rows of cells, counted from a pole, and the part of the domain farther from poles than a quarter
 # of it.

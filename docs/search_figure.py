@@ -55,7 +55,7 @@ def search_figure() -> Figure:
 
 
 def middles(index: Index) -> Floats:
-    """Return the middles (bins, 3) of the bins."""
+    """Return the centres (bins, 3) of the bins."""
     lists = index.lists
     caps = np.empty((lists.faces << 2 * lists.level, 4))
     write_caps(lists.inverse, lists.faces, lists.level, caps)
@@ -70,7 +70,7 @@ def bins_of(index: Index, normals: Floats) -> np.ndarray:
 
 
 def edge_of(index: Index, number: int) -> Floats:
-    """Return the border (k, 3) of a bin of the cube."""
+    """Return points (k, 3) of the boundary of a bin, on the sphere."""
     level = index.lists.level
     face, place = number >> 2 * level, number & (1 << 2 * level) - 1
     row, column = (sum((place >> 2 * k + shift & 1) << k for k in range(level)) for shift in (1, 0))
@@ -90,7 +90,7 @@ def draw(
     globe: Globe, spline: gm.Spline, index: Index, number: int, pieces: np.ndarray, chosen: int,
     width: float,
 ) -> None:  # fmt: skip
-    """Draw all images, those of a bin filled, the bin, and the cone of one piece."""
+    """Draw all images, filled for the pieces of the bin, the bin, and the cone of one piece."""
     for k in range(spline.patches):
         patch = Patch(spline.control_nets[k])
         arcs = [arc.points(17) for arc in patch.image.arcs]

@@ -47,7 +47,7 @@ def figure_6() -> tuple[Figure, str]:
 
 
 def caption_6(spline: gm.Spline, counts: Sequence[tuple[int, int]]) -> str:
-    """Return the caption, with the normals that lie in the image."""
+    """Return the caption of Fig. 6, with the numbers of normals in the image."""
     share = spline.measure[1].sum() / (4 * np.pi)
     found = [f"{x:,} of {y:,} normals ({100 * x / y:.2f} %)" for x, y in counts]
     return (

@@ -1,4 +1,4 @@
-"""A data set for learning: 1,000 random surfaces, 2,048 points of each, by all cores.
+"""A data set for learning: 1,000 random surfaces, 2,048 points of each, on all cores.
 
 Three of the surfaces are bad: the manifest says why. Run it again: there is nothing left to do.
 """
@@ -27,7 +27,7 @@ def waves(seed):
 
 
 def broken(kind):
-    """Return a function that is no surface."""
+    """Return a function that defines no surface."""
 
     def position(u, v):
         if kind == "an exception":
@@ -65,7 +65,7 @@ def main():
     check(dataset, clouds)
 
 
-# --- Is it true? The good ones are there, on their surfaces; the bad ones are known, and why. ---
+# --- Is it true? Points lie on their surfaces; the manifest has all bad surfaces, and reasons. ---
 
 
 def check(dataset, clouds):

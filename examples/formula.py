@@ -19,7 +19,7 @@ formula = gm.formulas["support_function"]
 print(formula.sentence, formula.source)
 print(formula.latex())
 
-# The support function of the offset at the distance R has R |n| more.
+# The support function of the offset at the distance R is larger by R |n|.
 n, R = formula.inputs[-1], sp.Symbol("R", real=True)
 changed = Formula.build(
     "offset_support_function",
@@ -35,7 +35,7 @@ print(source)
 # --- Is it true? At the normal of a point x(u,v) of the patch it is n·x + R. ---
 
 names = {"math": math, "inline": numba.njit}
-exec(source, names)  # as text, it can be put into a module of your own as well
+exec(source, names)  # the text can also be put into a module of your own
 rng = np.random.default_rng(1)
 for _ in range(100):
     a, b, c, d, e, p = rng.normal(size=(6, 3))

@@ -46,16 +46,17 @@ for found, minor in ((mesh, MINOR), (shell_mesh, MINOR + DISTANCE)):
     missing = 1 - area(found.vertices, found.triangles) / (4 * np.pi**2 * MAJOR * minor)
     assert 0 < missing < 0.126**2 / 3
 
-# Points of an outline lie on the quadratic spline that approximates the torus: in half a cell of
-# 2π/64 along u and along v, the terms of third order are below (π/64)³/6 of third derivatives.
+# Points of an outline are found on the quadratic spline that approximates the torus, and moved to
+# the torus. The misfit of the spline bounds the move: in half a cell of 2π/64 along u and along v,
+# the terms of third order are below (π/64)³/6 of third derivatives.
 TERMS = 2 * (np.pi / 64) ** 3 / 6 * (MAJOR + MINOR)
 assert np.abs(distance(outline.points) - MINOR).max() <= gm.fit(torus).misfit.distance < TERMS
 assert np.abs(outline.normals @ EYE).max() < 1e-12
 lines = [outline.points[line] for line in outline.polylines]
 assert len(lines) == 2
 assert all((line[0] == line[-1]).all() for line in lines)
-# All of it is there: where n·EYE = 0 by the formula, a point of the outline is not farther than
-# its points are from one another.
+# The outline is complete: no point with n·EYE = 0, by the formula, is farther from its points than
+# the widest gap between neighbours.
 turn = np.linspace(0, 2 * np.pi, 1_000)
 ring = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
 tilt = np.arctan2(-ring @ EYE, EYE[2])

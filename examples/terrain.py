@@ -1,4 +1,4 @@
-"""A digital elevation model to 20,000 points in world coordinates: a GeoTIFF in, a LAS file out.
+"""20,000 points of a digital elevation model, in world coordinates: a GeoTIFF in, a LAS file out.
 
 Needs `pip install "gaussmap[gis]"`. On the command line it is one line:
 
@@ -17,7 +17,7 @@ from rasterio.crs import CRS
 from rasterio.transform import from_origin
 
 COUNT, PIXEL, NODATA = 20_000, 30.0, -9999.0
-ROWS, COLUMNS, LAKE = 180, 240, (slice(40, 60), slice(100, 140))  # no heights are known in the lake
+ROWS, COLUMNS, LAKE = 180, 240, (slice(40, 60), slice(100, 140))  # without heights in the lake
 WEST, NORTH = 500_000.0, 5_200_000.0
 
 
@@ -60,8 +60,9 @@ for name in ("points.las", "again.las"):
     assert row.max() < ROWS - 0.5 + 1e-6
     in_lake = (np.abs(column - 120) < 20) & (np.abs(row - 50) < 10)
     assert not in_lake.any()
-    # A quadratic spline through the means of its neighbours is as far from the hills as half of
-    # their second derivatives times the square of a pixel: 150/600² + 40 (2/800 + 1/600)² < 0.0012.
+    # The coefficients of the spline are means of neighbouring heights. The distance of the spline
+    # from the hills is at most half of their second derivatives times the square of a pixel:
+    # 150/600² + 40 (2/800 + 1/600)² < 0.0012.
     assert np.abs(z - height(x, y)).max() < 0.0012 * PIXEL**2
 normals = samples.normals
 assert (normals[:, 2] > 0).all()

@@ -1,6 +1,6 @@
 """A page for each section of the formulas, with the texts of generated/formulas.md.
 
-Each formula has its words, its LaTeX, and the source of the functions that are printed from it.
+Each formula has its description, its LaTeX, and the source of the functions printed from it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ def _write(app: Sphinx) -> None:
     for title, entries in latex.sections().items():
         path = folder / (title.lower().replace(" ", "_") + ".md")
         text = "\n\n".join([f"# {title}", *(x for y in entries for x in _entry(y, found))]) + "\n"
-        if not path.exists() or path.read_text(encoding="utf-8") != text:  # else it is not new
+        # Sphinx reads only files that have changed.
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8", newline="\n")
 
 

@@ -27,7 +27,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
 
 
 def _inline(writer: HTML5Translator, node: nodes.math) -> None:
-    # GitHub writes $`x`$ for what is $x$ elsewhere.
+    # On GitHub, $`x`$ is written for $x$.
     source = node.astext().removeprefix("`").removesuffix("`")
     writer.body.append(f'<span class="math">{mathml(source)}</span>')
     raise nodes.SkipNode
@@ -48,7 +48,7 @@ def mathml(source: str, *, display: bool = False) -> str:
     # math-core knows no distances between rows: the stylesheet sets them.
     rows = re.sub(r"\\\\\[\w+\]", r"\\\\", source)
     converted = _converter().convert_with_local_state(rows, displaystyle=display)
-    # XML has no other named characters than these.
+    # XML has no named characters but these.
     root = ElementTree.fromstring(
         re.sub(r"&(?!(?:amp|lt|gt);)\w+;", lambda x: unescape(x[0]), converted)
     )
@@ -58,24 +58,24 @@ def mathml(source: str, *, display: bool = False) -> str:
 
 
 def _set_like_tex(element: ElementTree.Element) -> None:
-    """Change what browsers set worse than TeX does."""
+    """Correct the positions that browsers set worse than TeX does."""
     grows = any(part.tag in TALL for part in element.iter())
     for bracket in element.findall("mo"):
         if bracket.text in BRACKETS:
-            # In the middle of a row it would be a binary operator, with space round it; and one
-            # that may grow gets the room of the widest that there is.
+            # Without a form, a bracket inside a row is a binary operator, with space around it. A
+            # bracket that may grow is as wide as its widest variant.
             bracket.set("form", BRACKETS[bracket.text])
             if bracket.attrib.pop("minsize", None) or not grows:
                 bracket.attrib.pop("maxsize", None)
                 bracket.set("stretchy", "false")
     if element.tag in SCRIPTED and element[0].tag in HEIGHTS:
-        # An index hangs from the baseline, not from the tail of a letter such as p, and a power
-        # stands no higher for a bracket.
+        # A subscript is placed relative to the baseline, not to the descender of a letter such as
+        # p, and a superscript does not rise with the height of a bracket.
         base = ElementTree.Element("mpadded", HEIGHTS[element[0].tag])
         base.append(element[0])
         element[0] = base
     if element.tag == "mrow" and element.find("mtable") is not None:
-        # Only fonts made for mathematics have tall brackets: the stylesheet draws those of columns.
+        # Only fonts for mathematics have tall brackets; the stylesheet draws those of columns.
         for bracket in element.findall("mo"):
             element.remove(bracket)
     if element.tag == "mtr":
