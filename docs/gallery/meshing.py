@@ -63,7 +63,7 @@ for name, mesh in meshes.items():
 # %% [markdown]
 # Uniform samples give slightly smaller angles on average: most triangles lie on the thick side,
 # where the curvature is small. Where the ring is thin they are too large. In the balanced mesh the
-# largest angles are about half as large.
+# largest angles are about two thirds as large.
 
 # %%
 figure, axis = plt.subplots(figsize=(6, 2.6), dpi=75, layout="constrained")
