@@ -5,7 +5,6 @@ grid on its box to points with the normal. Each piece consists of points with th
 trim that are linked by chains of neighbours.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -14,24 +13,19 @@ from ..base.aliases import Array, Flags, Indices
 from ..base.trees import tree_of
 from ..domain.domain import brought_inside
 from ..domain.trim import Trim
-from ..proof.index import Undecided
+from ..proof.components import Undecided
+from ..proof.curves import Jets, are_thin, with_normal
 from ..proof.kernels.answers import KINDS
 from ..spline.joints import linked
 
-Jets = Callable[[Array, Array], Array]
-
 OPEN_BOX, ISOLATED = KINDS.index("open"), KINDS.index("isolated")
-# A box counts as thin if its width is at most THIN times its length, both relative to the domain.
-# Its grid is one row of PLACES points; that of other boxes has SIDE points along each side.
-PLACES, SIDE, THIN = 257, 65, 1e-3
+# The grid of a thin box is one row of PLACES points; that of other boxes has SIDE points along each
+# side.
+PLACES, SIDE = 257, 65
 # Points count as neighbours if their distance is at most NEIGHBOURS steps of the grid. Points are
-# rounded to multiples of 1/HALVES steps, and of points that become equal only one is kept.
-NEIGHBOURS, HALVES = 1.5, 2.0
-# From each grid point there are at most STEPS Gauss–Newton steps. They end when the angles between
-# the normal and the tangents differ from 90° by at most SETTLED; points at which these angles still
-# differ by more than NEAR are left out. An eigenvalue of the Hessian counts as 0 if it is less than
-# SINGULAR times the other one.
-STEPS, SETTLED, NEAR, SINGULAR = 16, 1e-14, 1e-9, 1e-4
+# rounded to multiples of 1/HALVES steps, and of points that become equal only one is kept. A piece
+# that is shorter than SHORTEST steps is a regular point in the box.
+NEIGHBOURS, HALVES, SHORTEST = 1.5, 2.0, 0.25
 
 
 def components_in(
@@ -84,14 +78,17 @@ class Grid(NamedTuple):
 def _pieces(trim: Trim, one: Undecided, normal: Array, jets: Jets) -> Undecided:
     """Return the pieces of a curve or a region that are inside a trim."""
     grid = _grid(trim, one.boxes[0])
-    uv = _with_normal(grid, one.boxes[0].reshape(2, 2).T, normal, jets)
+    places = grid.low + grid.step * grid.places
+    uv = with_normal(places, one.boxes[0].reshape(2, 2).T, normal, jets)
     uv = uv[trim.contains(uv)]
     places = np.divide(uv - grid.low, grid.step, out=np.zeros_like(uv), where=grid.step > 0.0)
     firsts = np.unique(np.round(HALVES * places), axis=0, return_index=True)[1]
     uv, places = uv[firsts], places[firsts]
     links = tree_of(places, grid.periods).query_pairs(NEIGHBOURS, output_type="ndarray")
     count, piece = linked(len(uv), *links.T)
-    members = [uv[piece == k] for k in range(count)]
+    long = [np.ptp(places[piece == k], axis=0).max() >= SHORTEST for k in range(count)]
+    members = [uv[piece == k] for k in np.flatnonzero(long)]
+    count = len(members)
     middles = np.array([x[len(x) // 2] for x in members]).reshape(count, 2)
     sides = [(x.min(axis=0) - grid.step, x.max(axis=0) + grid.step) for x in members]
     boxes = np.array(sides).reshape(count, 2, 2).transpose(0, 2, 1).reshape(count, 4)
@@ -104,33 +101,10 @@ def _pieces(trim: Trim, one: Undecided, normal: Array, jets: Jets) -> Undecided:
 def _grid(trim: Trim, box: Array) -> Grid:
     """Return the grid of a box; that of a thin box is one row on its middle line."""
     low, high = box.reshape(2, 2).T
-    shares = (high - low) / np.ptp(trim.domain, axis=1)
-    is_thin = shares <= THIN * shares.max()
-    around = (shares >= 1.0) & [x[0] == "periodic" for x in trim.boundary]
+    sizes = np.ptp(trim.domain, axis=1)
+    (is_thin,) = are_thin(box, sizes)
+    around = (high - low >= sizes) & [x[0] == "periodic" for x in trim.boundary]
     counts = np.where(is_thin, 1, PLACES if is_thin.any() else SIDE)
     step = np.where(is_thin, 0.0, (high - low) / np.maximum(counts - ~around, 1))
     places = np.indices(counts.tolist()).reshape(2, -1).T.astype(np.float64)
     return Grid(places, np.where(is_thin, (low + high) / 2.0, low), step, around * counts * 1.0)
-
-
-def _with_normal(grid: Grid, ends: Array, normal: Array, jets: Jets) -> Array:
-    """Return the parameters (k, 2) of points in a box that have `normal`.
-
-    Gauss–Newton steps lead to them from the points of a grid. `ends` (2, 2) are the lowest u and v
-    of the box, and the highest ones.
-    """
-    uv, scale = grid.low + grid.step * grid.places, np.ptp(ends, axis=0)
-    for _ in range(STEPS):
-        jet = jets(*uv.T.copy())
-        slopes, lengths = jet[:, 1:3] @ normal, np.linalg.norm(jet[:, 1:3], axis=2)
-        away = (np.abs(slopes) > SETTLED * lengths).any(axis=1)
-        if not away.any():
-            break
-        second = (jet[away, 3:] @ normal)[:, [0, 1, 1, 2]].reshape(-1, 2, 2)
-        inverse = np.linalg.pinv(second * np.outer(scale, scale), rcond=SINGULAR, hermitian=True)
-        step = scale * np.einsum("kij,kj->ki", inverse, slopes[away] * scale)
-        uv[away] = np.clip(uv[away] - step, *ends)
-    jet = jets(*uv.T.copy())
-    slopes, lengths = jet[:, 1:3] @ normal, np.linalg.norm(jet[:, 1:3], axis=2)
-    settled = (np.abs(slopes) <= NEAR * lengths).all(axis=1)
-    return uv[settled & (np.cross(jet[:, 1], jet[:, 2]) @ normal > 0.0)]

@@ -15,10 +15,7 @@ from numpy.typing import NDArray
 from ..base.aliases import Array, Indices
 from .kernels.answers import CURVE, ISOLATED, OPEN_BOX, WHERE, Answers, Sorted
 from .kernels.degree import LARGEST
-
-# Two boxes count as touching if their distance is at most the larger of their widths, or at most
-# this share of the domain.
-NEAR = 3e-6
+from .kernels.places import NEAR
 
 
 class Undecided(NamedTuple):
@@ -62,7 +59,9 @@ def boxes_of(answers: Sequence[Answers]) -> Undecided:
 def components_of(open_: Undecided, domain: Array) -> Undecided:
     """Return the boxes, after joining touching boxes of the same normal.
 
-    `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v or 0.
+    Two boxes count as touching if their distance is at most NEAR times the domain, or at most the
+    width of one of them; widths of large curves do not count. `domain` (6,) is u₀, u₁, v₀, v₁, and
+    the periods of u and v or 0.
     """
     keep = np.ones(len(open_.numbers), np.bool_)
     _, starts, counts = np.unique(open_.numbers, return_index=True, return_counts=True)
@@ -81,15 +80,18 @@ def components_of(open_: Undecided, domain: Array) -> Undecided:
 def _join(open_: Undecided, keep: NDArray[np.bool_], domain: Array) -> None:
     """Join touching boxes of one normal, in place: each component becomes its first box.
 
+    It is a curve if all boxes are, except for boxes that are at most NEAR times the domain wide.
     `keep` is set to False for the other boxes.
     """
-    k, slack, periods = 0, NEAR * (domain[1:4:2] - domain[0:4:2]), domain[4:]
+    k, size, periods = 0, domain[1:4:2] - domain[0:4:2], domain[4:]
     rows, kinds, border = open_.boxes, open_.kinds, open_.border
     while k < len(rows):
         low, high = rows[:, 0::2], rows[:, 1::2]
         shift = _shift(0.5 * (low + high), 0.5 * (low[k] + high[k]), periods)
         low, high, width = low + shift, high + shift, high - low
-        near = np.maximum(np.maximum(width, width[k]), slack)
+        on_curve, is_open = kinds == CURVE, (kinds != CURVE) & (width > NEAR * size).any(axis=1)
+        width[on_curve & (width > LARGEST * size).any(axis=1)] = 0.0
+        near = np.maximum(np.maximum(width, width[k]), NEAR * size)
         touch = keep & np.all((low <= high[k] + near) & (high >= low[k] - near), axis=1)
         touch[k] = False
         if not keep[k] or not touch.any():
@@ -98,8 +100,9 @@ def _join(open_: Undecided, keep: NDArray[np.bool_], domain: Array) -> None:
         touch[k] = True
         rows[k, 0::2], rows[k, 1::2] = low[touch].min(axis=0), high[touch].max(axis=0)
         border[k] = border[touch].any()
-        if (kinds[touch] != CURVE).any():
-            kinds[k] = OPEN_BOX
+        kinds[k] = OPEN_BOX
+        if on_curve[touch].any() and not is_open[touch].any():
+            kinds[k], open_.uv[k] = CURVE, open_.uv[touch & on_curve][0]
         touch[k] = False
         keep[touch] = False
         k = 0

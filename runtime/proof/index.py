@@ -13,6 +13,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -27,13 +28,16 @@ from ..search.kernels.search import CELLS as KIND
 from ..search.kernels.search import Memory, Pairs, search
 from ..search.patch_index import listed, ordered
 from ..tape.kernels.points import LANES, Tape
+from ..tape.tapes import jets_of
 from .apexes import Apex, apexes_of
 from .components import Undecided, boxes_of, components_of, with_kinds
+from .curves import are_thin, separated
 from .discs import PoleDisc
 from .grid_lines import joints_and_creases, lines_of
 from .kernels.answers import (
     BORDER,
     BOX,
+    CURVE,
     Answers,
     Sorted,
     count_places,
@@ -44,6 +48,7 @@ from .kernels.answers import (
 )
 from .kernels.cell_bounds import OPEN, REACH, WIDE, CellBounds, Work, cut_cells
 from .kernels.components import indices_around
+from .kernels.degree import LARGEST
 from .kernels.discs import decide_discs
 from .kernels.evaluated_pairs import Index, Lines, Outcome, Tiles, evaluate_pairs
 from .kernels.places import Boxes, decide_normals
@@ -247,7 +252,7 @@ class ProvedIndex:
             parts.append(Places(rows, numbers))
         places = _sorted(parts, len(normals))
         if len(open_.numbers) > 0:
-            open_ = components_of(open_, self.domain)
+            open_ = self._separated(components_of(open_, self.domain), normals)
             open_ = with_kinds(open_, self._around(open_, normals), places, self.domain)
         if self.seams:
             places = self._once_at_seams(places)
@@ -269,6 +274,43 @@ class ProvedIndex:
             out = np.maximum(u - (high - beyond), 0.0)
             rows[:, axis], rows[:, 2 + axis] = u - out, rows[:, 2 + axis] + out
         return Sorted(places.numbers[keep], rows[keep])
+
+    def _separated(self, open_: Undecided, normals: NDArray[np.float64]) -> Undecided:
+        """Return the components, with a row for each of several curves in one box.
+
+        A thin box has one curve only, and a small box at most one component.
+        """
+        sizes, boxes = np.ptp(self.domain[:4].reshape(2, 2), axis=1), open_.boxes
+        small = (np.ptp(boxes.reshape(-1, 2, 2), axis=2) <= LARGEST * sizes).all(axis=1)
+        thin = are_thin(boxes, sizes).any(axis=1)
+        wide = np.flatnonzero((open_.kinds == CURVE) & ~small & ~thin)
+        if len(wide) == 0:
+            return open_
+        known = dict[bytes, Array]()
+        found = [Undecided._make(x[[k]] for x in open_) for k in range(len(open_.numbers))]
+        for k in wide.tolist():
+            normal = normals[open_.numbers[k]]
+            if (key := normal.tobytes()) not in known:
+                known[key] = self._small_boxes(normal)
+            found[k] = separated(
+                found[k], known[key], self.domain[4:], normal, partial(jets_of, self.tape)
+            )
+        return Undecided._make(np.concatenate(x) for x in zip(*found, strict=True))
+
+    def _small_boxes(self, normal: NDArray[np.float64]) -> Array:
+        """Return the middles and half the widths (k, 2, 2) of the boxes that bisection leaves."""
+        hard = self._search(normal[None], 1)[1]
+        hard = hard[np.argsort(hard[:, 1])]
+        groups = np.array([0, np.searchsorted(hard[:, 1], self.index.discs)])
+        with self.room() as rooms:
+            rooms.boxes.on_curve[:] = 0.0
+            decide_normals(
+                self.tape, rooms.work, self.index, normal[None], hard, groups, 0, 1, self.domain,
+                rooms.boxes, rooms.answers[0],
+            )  # fmt: skip
+            rows = rooms.boxes.on_curve[rooms.boxes.on_curve[:, 3] > 0.0]
+        sizes = self.index.cells.place[rows[:, 2].astype(int), 2:4]
+        return np.stack([rows[:, :2], rows[:, 3:] * sizes], axis=1)
 
     def _around(self, open_: Undecided, normals: NDArray[np.float64]) -> Array:
         """For each undecided box, return the winding number around it and the box of its path.

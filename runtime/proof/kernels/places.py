@@ -87,6 +87,8 @@ SLENDER, SHRUNK = 4.0, 2.0**-5
 # times the square of its larger eigenvalue. If it is not of rank 1, and the error of the solution
 # is less than SURE times the size of the box, the solution is regular: it is on no curve.
 SETTLING, BESIDE, RANK, SURE = 32, 4.0, 1e-4, 2.0**-12
+# Boxes that are at most NEAR times the domain wide, and touch boxes on a curve, belong to it.
+NEAR = 3e-6
 
 
 class Boxes(NamedTuple):
@@ -313,7 +315,8 @@ def set_aside(tape, work, boxes, cells, count, on_curve, n):
 def list_rest(tape, work, index, boxes, count, on_curve, domain, number, n, answers):
     """List the undecided boxes of the last level, and those on curves, as clusters.
 
-    A cluster counts as a curve if all of its boxes are on curves. Return whether there was room.
+    A cluster counts as a curve if all of its boxes are on curves, except for boxes that are at most
+    NEAR times the domain wide. Return whether there was room.
     """
     cells, rows = index.cells, boxes.on_curve
     on_curve, left = set_aside(tape, work, boxes, cells, count, on_curve, n)
@@ -323,7 +326,7 @@ def list_rest(tape, work, index, boxes, count, on_curve, domain, number, n, answ
     hulls = cluster(rows, on_curve + left, cells, domain[4:], boxes.hulls, boxes.owner)
     for i in range(hulls):
         hull, first = boxes.hulls[i], answers.counts[1]
-        middle = middle_of(boxes, on_curve, left, i)
+        middle = middle_of(boxes, on_curve, left, i, cells, domain)
         kind = CURVE if middle >= 0 else OPEN_BOX
         if not add_open(answers, number, hull[0], hull[1], hull[2], hull[3], kind, domain):
             return False
@@ -335,14 +338,17 @@ def list_rest(tape, work, index, boxes, count, on_curve, domain, number, n, answ
 
 
 @inline
-def middle_of(boxes, on_curve, left, owner):
-    """Return the index of the middle box of a cluster; −1 if one of its boxes is on no curve."""
-    own = 0
+def middle_of(boxes, on_curve, left, owner, cells, domain):
+    """Return the index of the middle box of a cluster; −1 if it does not count as a curve."""
+    own, rows = 0, boxes.on_curve
+    most_u, most_v = 0.5 * NEAR * (domain[1] - domain[0]), 0.5 * NEAR * (domain[3] - domain[2])
     for k in range(on_curve + left):
         if boxes.owner[k] == owner:
-            if k >= on_curve:
+            j = int(rows[k, 2])
+            if k < on_curve:
+                own += 1
+            elif rows[k, 3] * cells.place[j, 2] > most_u or rows[k, 4] * cells.place[j, 3] > most_v:
                 return -1
-            own += 1
     middle = own // 2
     for k in range(on_curve):
         if boxes.owner[k] == owner:
