@@ -1,5 +1,6 @@
 """Surfaces for tests of several folders: closed ones outside the catalogue, and moved ones."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import gaussmap as gm
@@ -94,10 +95,14 @@ WEIGHTS = np.array([1.0, np.sqrt(0.5)] * 4 + [1.0])
 MERIDIAN, HALF = CIRCLE[[6, 7, 0, 1, 2]], WEIGHTS[:5]
 
 
+def bezier(degree: int, count: int) -> Any:
+    """Return the knots, over 0, 1, …, of joined Bézier curves with `count` control points."""
+    spans = (count - 1) // degree
+    return np.repeat(np.arange(spans + 1.0), [degree + 1, *[degree] * (spans - 1), degree + 1])
+
+
 def conics(points: Any) -> Any:
-    """Return the knots of joined conics, over 0, 1, …"""
-    arcs = len(points) // 2
-    return np.repeat(np.arange(arcs + 1.0), [3] + [2] * (arcs - 1) + [3])
+    return bezier(2, len(points))
 
 
 def revolved(
@@ -119,17 +124,37 @@ def same(one: gm.Samples, other: gm.Samples) -> None:
         assert (found.dtype, found.tobytes()) == (array.dtype, array.tobytes()), name
 
 
+def same_chunks(chunks: Iterable[gm.Samples], whole: gm.Samples, size: int) -> None:
+    """Check that all chunks but the last are full, and that they make the whole."""
+    parts = list(chunks)
+    assert [len(x) for x in parts[:-1]] == [size] * (len(parts) - 1)
+    assert 0 < len(parts[-1]) <= size
+    joined = gm.Samples.concatenate(parts)
+    same(joined, whole)
+    for name in ("on", "unrefined", "undecided", "developable_share", "normals", "samples"):
+        assert getattr(joined.report, name) == getattr(whole.report, name)
+
+
+def random_rotation(seed: int) -> Any:
+    """Return the matrix (3, 3) of a random rotation."""
+    turn = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    return turn * np.sign(np.linalg.det(turn))
+
+
 def circle(count: int, centre: Any, radius: float) -> Any:
     """Return the corners (count, 2) of a regular polygon in a circle."""
     angles = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
     return centre + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 
+def unit(vectors: Any) -> Any:
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
 def normals_at(surface: gm.Surface, uv: Any) -> Any:
     """Return the unit normals (k, 3) of a surface at parameters (k, 2)."""
     jets = surface.derivatives(*uv.T)
-    vectors = np.cross(jets[:, 1], jets[:, 2])
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+    return unit(np.cross(jets[:, 1], jets[:, 2]))
 
 
 def farthest(samples: gm.Samples, points: Any) -> float:

@@ -119,24 +119,24 @@ def test_a_missing_field_is_said_to_be():
 )
 def test_fields_that_are_none(fields, message):
     error = gm.errors.UnknownNameError if "no field" in message else gm.errors.InputError
-    for call in (
-        lambda: narrow(fields),
-        lambda: next(gm.sample_many([SPLINE], normals=NORMALS, fields=fields)),
-        lambda: gm.sample_stream(SPLINE, normals=NORMALS, fields=fields),
-    ):
-        refused(message, call, error=error)
+    check_refused(message, error, fields=fields)
 
 
 @pytest.mark.parametrize(
     "dtype", ["float16", np.float128, int, ">f4", "numbers", object, 7, "f4,f4", None, "f("]
 )
 def test_types_that_are_none(dtype):
+    check_refused("dtype must be float32 or float64, not", gm.errors.InputError, dtype=dtype)
+
+
+def check_refused(message: str, error: type[Exception], **named: Any) -> None:
+    """Check that all that samples refuses arguments."""
     for call in (
-        lambda: narrow(dtype=dtype),
-        lambda: next(gm.sample_many([SPLINE], normals=NORMALS, dtype=dtype)),
-        lambda: gm.sample_stream(SPLINE, normals=NORMALS, dtype=dtype),
+        lambda **x: gm.sample(SPLINE, normals=NORMALS, **x),
+        lambda **x: next(gm.sample_many([SPLINE], normals=NORMALS, **x)),
+        lambda **x: gm.sample_stream(SPLINE, normals=NORMALS, **x),
     ):
-        refused("dtype must be float32 or float64, not", call)
+        refused(message, call, error=error, **named)
 
 
 # --- samples of few fields ------------------------------------------------------------------------

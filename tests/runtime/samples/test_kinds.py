@@ -7,25 +7,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
-from ...products import covering
 from ...shapes import moved
-
-ROTATION = np.linalg.qr(np.array([[0.7, 0.3, -0.5], [0.2, 0.8, 0.6], [-0.4, 0.5, 0.9]]))[0]
-ROTATION *= np.linalg.det(ROTATION)
-
-
-@covering(
-    name=["plane", "cylinder"],
-    shift=[0.0, 1e6],
-    factor=[1.0, 1e-9, 1e9],
-    cells=[(16, 16), (48, 100)],
-)
-def test_planes_and_cylinders_are_parabolic(name, shift, factor, cells):
-    surface = moved(gm.surfaces.surface(name), factor, factor * shift, ROTATION)
-    samples = gm.sample(gm.fit(surface, cells), 100)
-    assert samples.parabolic.all()
-    assert "(100 with K = 0)" in samples.summary()
-    assert (samples.elliptic ^ samples.hyperbolic).all()
 
 
 @pytest.mark.parametrize("factor", [1.0, 1e-9, 1e9, 1e-100])

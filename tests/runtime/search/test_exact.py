@@ -12,6 +12,8 @@ from gaussmap.runtime.search import exact, long_integers
 from hypothesis import given
 from hypothesis import strategies as st
 
+from .forms import fractions, power_form
+
 ALIGNED = np.array([n for n in product((-1.0, 0.0, 1.0), repeat=3) if any(n)])
 PERIODIC: Any = (("periodic", "periodic"), ("periodic", "periodic"))
 OPEN: Any = (("open", "open"), ("open", "open"))
@@ -27,10 +29,6 @@ def torus_of_integers(m: int, n: int, size: int, noise: np.ndarray) -> gm.Spline
     )
 
 
-def sign_sums(spline: gm.Spline, normals: np.ndarray) -> np.ndarray:
-    return gm.GaussMap(spline).degree(normals)
-
-
 @given(
     seed=st.integers(0, 2**32 - 1),
     height=st.integers(0, 4),
@@ -41,32 +39,7 @@ def test_dented_integer_torus(seed: int, height: int, size: int, cells: tuple[in
     noise = np.random.default_rng(seed).integers(-height, height + 1, (*cells, 3))
     spline = torus_of_integers(*cells, size, noise if size == 64 else 0 * noise)
     normals = np.concatenate([ALIGNED, gm.icosphere(3)])
-    assert (sign_sums(spline, normals) == 0).all()
-
-
-def control_net(spline: gm.Spline, i: int, j: int, turn: int) -> np.ndarray:
-    """Return b200, b020, b002, b110, b101, b011 of a triangle of a cell, in fractions."""
-
-    def coefficient(x: int, y: int) -> np.ndarray:
-        for _ in range(turn):  # by quarter turns, from the south triangle
-            x, y = -y, x
-        return np.array([Fraction(float(z)) for z in spline.coefficients[i + x, j + y]])
-
-    c, n, s = coefficient(0, 0), coefficient(0, 1), coefficient(0, -1)
-    w, e, sw, se = (coefficient(*place) for place in ((-1, 0), (1, 0), (-1, -1), (1, -1)))
-    return np.array([
-        (c + s + sw + w) / 4, (c + s + se + e) / 4, c / 2 + (n + s + w + e) / 8,
-        (c + s) / 2, c / 2 + (s + w) / 4, c / 2 + (s + e) / 4,
-    ])  # fmt: skip
-
-
-def power_form(net: np.ndarray) -> np.ndarray:
-    """Return a, b, c, d, e (5, 3) of the patch ½ a u² + b uv + ½ c v² + d u + e v + p."""
-    b200, b020, b002, b110, b101, b011 = net
-    return np.array([
-        2 * (b200 - 2 * b101 + b002), 2 * (b110 - b101 - b011 + b002),
-        2 * (b020 - 2 * b011 + b002), 2 * (b101 - b002), 2 * (b011 - b002),
-    ])  # fmt: skip
+    assert (gm.GaussMap(spline).degree(normals) == 0).all()
 
 
 def integers_of(vectors: np.ndarray) -> np.ndarray:
@@ -80,15 +53,13 @@ def integers_of(vectors: np.ndarray) -> np.ndarray:
 @pytest.mark.kernels
 def test_forms_on_integers_are_those_of_fractions() -> None:
     spline = torus_of_integers(6, 5, 50, np.zeros((6, 5, 3)))
-    spline.coefficients[...] *= 0.3  # no integers any more, and a common exponent to find
-    patches = np.arange(spline.patches)
-    vectors, exponent = long_integers.patch_vectors(spline, patches)
+    bits = np.random.default_rng(4).integers(-(2**40), 2**40, spline.coefficients.shape)
+    spline.coefficients[...] = bits * 2.0**-50  # a common exponent to find, and exact nets
+    vectors, exponent = long_integers.patch_vectors(spline, np.arange(spline.patches))
     unit = Fraction(2) ** exponent / Fraction(spline.scale)
-    for patch in patches[::7]:
-        cell, turn = divmod(int(patch), 4)
-        i, j = divmod(cell, spline.cells[1])
-        net = control_net(spline, i + 1, j + 1, turn)
-        assert (vectors[..., patch] * unit == 8 * power_form(net)).all()
+    for patch in range(0, spline.patches, 7):
+        expected = 16 * power_form(fractions(spline.control_nets[patch]))
+        assert (vectors[..., patch] * unit == expected).all()
 
 
 @pytest.mark.kernels
@@ -194,26 +165,3 @@ def test_numbers_too_long_for_the_kernel_are_long_integers() -> None:
     spline = torus_of_integers(8, 6, 8, np.zeros((8, 6, 3)))
     spline.coefficients[3, 3] *= 1e-200
     check_forms(spline, *every_pair(spline, np.array([[1.0, 0.0, 0.0], [1.0, 1e-170, 1e-290]])))
-
-
-@pytest.mark.parametrize("name", ["catenoid", "hyperboloid"])
-def test_border_vertices_of_a_closed_ring_count_once(name: str) -> None:
-    """The first and the last vertex on the border are one place: its normal is asked twice."""
-    spline = gm.fit(gm.surfaces.surface(name), (12, 8))
-    for v in spline.domain[1]:
-        normals = spline.normals(np.linspace(*spline.domain[0], 13), v)
-        samples = gm.sample(spline, normals=normals)
-        np.testing.assert_array_equal(np.bincount(samples.normal_index, minlength=13), 1)
-
-
-def test_equal_normals_are_answered_alike() -> None:
-    """Those of the vertices on the border, where rounding lets several patches answer."""
-    spline = gm.fit(gm.surfaces.elliptic_paraboloid(), (12, 8))
-    (u_0, u_1), (v_0, v_1) = spline.domain
-    u, v = np.linspace(u_0, u_1, 13), np.linspace(v_0, v_1, 9)
-    normals = np.concatenate([spline.normals(u, end) for end in (v_0, v_1)])
-    normals = np.concatenate([normals, *(spline.normals(end, v) for end in (u_0, u_1))])
-    samples = gm.sample(spline, normals=np.concatenate([normals, normals]))
-    counts = np.bincount(samples.normal_index, minlength=2 * len(normals))
-    np.testing.assert_array_equal(counts[: len(normals)], 1)
-    np.testing.assert_array_equal(counts[len(normals) :], 1)

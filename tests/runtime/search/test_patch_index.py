@@ -2,6 +2,7 @@
 
 import pickle
 import threading
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -13,6 +14,10 @@ from gaussmap.runtime.search.search import Hits, find
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+
+from ...products import covering
+from ...shapes import unit
+from ..spline.test_spline import bezier
 
 Array = NDArray[np.float64]
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
@@ -76,10 +81,6 @@ def every(spline: gm.Spline, normals: Array) -> Hits:
     return Hits(keys[order], np.arange(len(keys)), decision.local[order], 0)
 
 
-def pairs(hits: Hits) -> list[tuple[int, int]]:
-    return list(zip(hits.normal_index.tolist(), hits.patch_index.tolist(), strict=True))
-
-
 def check_hits(spline: gm.Spline, normals: Array) -> Hits:
     """Assert that the hits are those of exact decisions, but at components of several hits."""
     found, exactly = find(spline, normals, components=True), every(spline, normals)
@@ -109,14 +110,10 @@ def test_rough_splines(seed: int, roughness: float) -> None:
 
 def normals_of(spline: gm.Spline) -> Array:
     """Return normals (patches, k, 3) at places of each patch, from its control net."""
-    b200, b020, b002, b110, b101, b011 = np.moveaxis(spline.control_nets, 1, 0)
-    along_u = np.stack([b200 - b101, b110 - b011, b101 - b002])
-    along_v = np.stack([b110 - b101, b020 - b011, b011 - b002])
     inside = np.random.default_rng(0).dirichlet([0.5] * 3, 20)
     corners = (1.0 - 3e-6) * np.eye(3) + 1e-6  # not of collapsed sides, where lengths vanish
     places = np.concatenate([inside, corners])
-    normals = np.cross(*(np.einsum("ki,ipx->pkx", places, x) for x in (along_u, along_v)))
-    return normals / np.linalg.norm(normals, axis=-1, keepdims=True)
+    return unit(np.cross(*bezier(spline.control_nets[:, None], places)[1:]))
 
 
 @pytest.mark.parametrize("name", SPLINES)
@@ -150,62 +147,35 @@ def test_normals_are_compared_with_few_patches(name: str) -> None:
     assert members.sum() < 12 * spline.patches
 
 
-def test_bins_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("moebius_band", "crumpled", "waves"):
-        spline, normals = SPLINES[name], asked(SPLINES[name])
-        expected = pairs(find(spline, normals))
-        for sizes in ({"BINS_PER_PIECE": 2.0}, {"BINS_PER_PIECE": 30.0}, {"WIDEST_CAP": 0.0}):
-            with monkeypatch.context() as patch:
-                for size, value in sizes.items():
-                    patch.setattr(patch_index, size, value)
-                fresh = pickle.loads(pickle.dumps(spline))  # without its index
-                assert pairs(find(fresh, normals)) == expected
+# Sizes of parts of the work.
+SIZES: dict[str, list[tuple[Any, str, float]]] = {
+    "wide bins": [(patch_index, "BINS_PER_PIECE", 2.0)],
+    "narrow bins": [(patch_index, "BINS_PER_PIECE", 30.0)],
+    "no caps": [(patch_index, "WIDEST_CAP", 0.0)],
+    "no room for hits": [(search, "ROOM", 1)],
+    "parts of the spline": [(patch_index, "MOST_PATCHES", 100), (search, "MOST_PATCHES", 100)],
+    "few hits": [(search, "MOST_HITS", 40), (search, "RANGE", 3)],
+    "few pieces": [(search, "RANGE", 7), (patch_index, "PIECES_AT_A_TIME", 50)],
+}
 
 
-def test_hits_without_room_are_searched_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    spline = SPLINES["crumpled"]
-    expected = pairs(find(spline, NORMALS))
-    monkeypatch.setattr(search, "ROOM", 1)
-    assert pairs(find(spline, NORMALS)) == expected
+@covering(name=["torus", "moebius_band", "crumpled", "waves"], size=SIZES, threads=[1, 2, 5])
+def test_sizes_and_threads_do_not_change_hits(
+    name: str, size: str, threads: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spline, normals = pickle.loads(pickle.dumps(SPLINES[name])), asked(SPLINES[name])
+    expected = find(SPLINES[name], normals, 1)
+    for module, constant, value in SIZES[size]:
+        monkeypatch.setattr(module, constant, value)
+    parts = list(search.find_in_turn(spline, normals, threads))
+    found = Hits.joined(parts)
+    for array in ("keys", "exact", "local"):
+        np.testing.assert_array_equal(getattr(found, array), getattr(expected, array))
     assert len(expected) > 4
-
-
-@pytest.mark.parametrize("name", ["torus", "moebius_band"])
-def test_parts_of_large_splines(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """They have an index for each range of patches, which is not kept."""
-    spline = pickle.loads(pickle.dumps(SPLINES[name]))
-    expected = find(SPLINES[name], asked(spline))
-    monkeypatch.setattr(patch_index, "MOST_PATCHES", 100)
-    monkeypatch.setattr(search, "MOST_PATCHES", 100)
-    found = find(spline, asked(spline))
-    assert pairs(found) == pairs(expected)
-    assert (found.exact == expected.exact).all()
-    assert (found.local == expected.local).all()
-    assert Index not in vars(spline)["_kept"]
-
-
-def test_many_hits_are_found_in_smaller_ranges(monkeypatch: pytest.MonkeyPatch) -> None:
-    """So that memory is bounded: one normal may have more hits than all others."""
-    spline, normals = SPLINES["crumpled"], asked(SPLINES["crumpled"])
-    expected = find(spline, normals)
-    monkeypatch.setattr(search, "MOST_HITS", 40)
-    monkeypatch.setattr(search, "RANGE", 3)
-    parts = list(search.find_in_turn(spline, normals))
-    joined = Hits.joined(parts)
-    assert len(parts) > len(expected) / 40
-    assert (joined.keys == expected.keys).all()
-    assert (joined.exact == expected.exact).all()
-
-
-@pytest.mark.parametrize("threads", [2, 5])
-def test_threads_do_not_change_hits(threads: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    spline = SPLINES["torus"]
-    one = find(spline, NORMALS, 1)
-    monkeypatch.setattr(search, "RANGE", 7)
-    monkeypatch.setattr(patch_index, "PIECES_AT_A_TIME", 50)
-    other = find(pickle.loads(pickle.dumps(spline)), NORMALS, threads)
-    assert (one.keys == other.keys).all()
-    assert (one.local == other.local).all()
+    if size == "few hits":  # so that memory is bounded: one normal may have the most of all hits
+        assert len(parts) > len(expected) / 40
+    # Parts of a spline have an index each, which is not kept.
+    assert (Index in vars(spline)["_kept"]) == (size != "parts of the spline")
 
 
 def test_an_index_is_made_once_and_not_pickled(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ import pytest
 from gaussmap.runtime.search import exact, search
 from gaussmap.runtime.search import hits as fill
 
-from ...shapes import same
+from ...shapes import same, same_chunks
 
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
 SPLINE, NORMALS = gm.fit(gm.surfaces.torus(), (12, 8)), gm.icosphere(6)
@@ -21,9 +21,7 @@ SPLINE, NORMALS = gm.fit(gm.surfaces.torus(), (12, 8)), gm.icosphere(6)
 
 def test_proved_samples_are_in_the_order_of_normals_and_of_u_and_v():
     samples = gm.sample("torus", normals=NORMALS)
-    keys = [
-        (k, *x) for k, x in zip(samples.normal_index.tolist(), samples.uv.tolist(), strict=True)
-    ]
+    keys = np.column_stack([samples.normal_index, samples.uv]).tolist()
     assert keys == sorted(keys)
 
 
@@ -85,14 +83,8 @@ def test_chunks_make_the_whole(name, threads, monkeypatch):
     for asked in questions:
         whole = gm.sample(spline, density="gauss", threads=1, **asked)
         for size in (7, 100, len(whole), 10**9):
-            chunks = list(gm.sample_stream(spline, chunk=size, threads=threads, **asked))
-            assert [len(x) for x in chunks[:-1]] == [size] * (len(chunks) - 1)
-            assert 0 < len(chunks[-1]) <= size
-            joined = gm.Samples.concatenate(chunks)
-            same(joined, whole)
-            assert joined.report.developable_share == whole.report.developable_share
-            assert joined.report.normals == whole.report.normals
-            assert joined.report.samples == whole.report.samples
+            chunks = gm.sample_stream(spline, chunk=size, threads=threads, **asked)
+            same_chunks(chunks, whole, size)
 
 
 # --- the end --------------------------------------------------------------------------------------

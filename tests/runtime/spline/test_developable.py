@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ...products import covering
-from ...shapes import moved
+from ...shapes import moved, random_rotation
 
 DENSE = 1e5 / (4 * math.pi)
 
@@ -36,11 +36,33 @@ def test_curved_surfaces_are_curved(name, solid_angle):
         assert curved_solid_angle(spline, DENSE) == pytest.approx(solid_angle, rel=0.02)
 
 
-@covering(name=["plane", "cylinder", "cone"], factor=[1.0, 1e-12, 1e12], shift=[0.0, 1e6])
-def test_developable_surfaces_are_so_entirely(name, factor, shift):
-    spline = gm.fit(moved(gm.surfaces.surface(name), factor, shift * factor), (32, 32))
+@covering(
+    name=["plane", "cylinder", "cone"],
+    factor=[1.0, 1e-12, 1e-9, 1e9, 1e12],
+    shift=[0.0, 1.0, 1e6],
+    rotation=[np.eye(3), random_rotation(1)],
+)
+def test_developable_surfaces_are_so_entirely(name, factor, shift, rotation):
+    spline = gm.fit(moved(gm.surfaces.surface(name), factor, shift * factor, rotation), (32, 32))
     assert developable_share(spline, DENSE) == pytest.approx(1.0)
     assert curved_solid_angle(spline, DENSE) == 0.0
+    with pytest.warns(gm.GaussmapWarning, match="flat or developable"):
+        samples = gm.sample(spline, normals=gm.icosphere(32))
+    assert np.isfinite(samples.points).all()
+    assert np.isfinite(samples.gaussian_curvature).all()
+    assert samples.report.developable_share == pytest.approx(1.0)
+    if name == "cone":  # its spline is slightly elliptic and hyperbolic: pairs of such samples
+        is_regular = samples.component == gm.Component.REGULAR
+        signs = np.copysign(1, samples.gaussian_curvature[is_regular])
+        assert abs(signs.sum()) <= 2
+        assert len(samples) <= 0.15 * 10242
+        return
+    assert (samples.component == gm.Component.CURVE).all()
+    assert samples.report.developable_patches == samples.report.patches
+    of_area = gm.sample(spline, 100)
+    assert of_area.parabolic.all()
+    assert (of_area.elliptic ^ of_area.hyperbolic).all()
+    assert "(100 with K = 0)" in of_area.summary()
 
 
 @pytest.mark.kernels

@@ -4,7 +4,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
-from ...refusals import refused as is_refused
+from ...refusals import refused
+from ...shapes import klein_bottle, unit
 
 POINTS = np.random.default_rng(7).random((5, 6, 3))
 HEIGHTS = np.random.default_rng(8).random((5, 6))
@@ -15,11 +16,6 @@ def rng():
     return np.random.default_rng(9)
 
 
-def refused(complaint, *arguments, **named):
-    """Check that from_grid raises InputError with one line that matches `complaint`."""
-    is_refused(complaint, gm.Surface.from_grid, *arguments, **named)
-
-
 def order(errors):
     """Return the mean order of convergence over grids that are refined by 2."""
     return float(np.log2(errors[0] / errors[-1]) / (len(errors) - 1))
@@ -28,34 +24,16 @@ def order(errors):
 # --- closed surfaces: f on [0,1]², what is periodic, the cells of a coarse grid -------------------
 
 
-def torus(u, v):
-    u, v = 2 * np.pi * u, 2 * np.pi * v
-    r = 1.0 + 0.35 * np.cos(v)
-    return np.stack([r * np.cos(u), r * np.sin(u), 0.35 * np.sin(v) + 0 * u], axis=-1)
+def over_square(surface):
+    """Return a surface as a function of parameters from 0 to 1."""
+    low, size = np.array(surface.domain)[:, 0], np.ptp(surface.domain, axis=1)
+    return lambda u, v: surface.evaluate(low[0] + size[0] * u, low[1] + size[1] * v)
 
 
-def tube(u, v):
-    u = 2 * np.pi * u
-    return np.stack([np.cos(u) * (2 + v * v), np.sin(u) * (2 - v), 3 * v + 0 * u], axis=-1)
-
-
-def moebius(u, v):
-    u, v = 2 * np.pi * u, 0.8 * v - 0.4
-    r = 1.0 + v * np.sin(u / 2)
-    return np.stack([r * np.cos(u), r * np.sin(u), v * np.cos(u / 2)], axis=-1)
-
-
-def klein(u, v):
-    u, v = 2 * np.pi * u, 2 * np.pi * v
-    r = 2.0 + np.cos(v)
-    return np.stack([r * np.cos(u), r * np.sin(u), np.sin(v) * np.cos(u / 2)], axis=-1)
-
-
-def ball(u, v):
-    u, v = 2 * np.pi * u, np.pi * (v - 0.5)
-    return np.stack(
-        [np.cos(u) * np.cos(v), 0.8 * np.sin(u) * np.cos(v), np.sin(v) + 0 * u], axis=-1
-    )
+torus, tube, moebius, klein, ball = map(over_square, (
+    gm.surfaces.torus(), gm.surfaces.hyperboloid(), gm.surfaces.moebius_band(), klein_bottle(),
+    gm.surfaces.ellipsoid(b=0.8, c=1.0),
+))  # fmt: skip
 
 
 def cap(u, v):
@@ -95,8 +73,7 @@ def test_points_and_normals_converge(name, rng):
     if name in ("ball", "cap"):
         v = 0.1 + 0.8 * v  # at the poles there is no normal
     step = 1e-6
-    across = np.cross(f(u + step, v) - f(u - step, v), f(u, v + step) - f(u, v - step))
-    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    across = unit(np.cross(f(u + step, v) - f(u - step, v), f(u, v + step) - f(u, v - step)))
     position_errors, normal_errors = [], []
     for factor in (2, 4, 8):
         cells = coarsest[0] * factor, coarsest[1] * factor
@@ -190,69 +167,59 @@ def test_the_surface_keeps_its_points():
 # --- what is refused ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("value", [np.inf, -np.inf])
-def test_infinity_and_where(value):
-    points = POINTS.copy()
-    points[3, 4, 1] = points[4, 0, 2] = value
-    refused(r"grid holds 2 points with infinity, the first at \[3, 4\]", points)
-    heights = HEIGHTS.copy()
-    heights[1, 4] = value
-    for spacing in ((1.0, 2.0), (1.0, -2.0)):
-        refused(r"holds 1 points with infinity, the first at \[1, 4\]", heights, spacing)
+def with_values(points, value, *places):
+    points = points.copy()
+    for place in places:
+        points[place] = value
+    return points
 
 
-@pytest.mark.parametrize(
-    ("shape", "periodic", "complaint"),
-    [
-        ((3, 6), (False, False), "grid has 3 x 6 points; it needs at least 4 along axis 0"),
-        ((6, 3), (False, False), "grid has 6 x 3 points; it needs at least 4 along axis 1"),
-        ((2, 6), (True, False), "grid has 2 x 6 points; it needs at least 3 along axis 0"),
-        ((6, 2), (False, "mirrored"), "grid has 6 x 2 points; it needs at least 3 along axis 1"),
-        ((0, 0), (False, False), "grid has 0 x 0 points"),
-        ((1, 1), (True, True), "grid has 1 x 1 points"),
-    ],
-)
-def test_too_few_points(shape, periodic, complaint):
-    refused(complaint, np.zeros((*shape, 3)), periodic=periodic)
+MAP = {"spacing": (1.0, 1.0)}
+NOTHING = np.full((9, 9), np.nan)
+BALL = grid_of(ball, (True, "pole"), (12, 7))
+OTHER_SHAPE = r"must have the shape \(m, n, 3\), or \(m, n\) for elevations, not \("
+REFUSED = [
+    *((np.zeros((*shape, 3)), {"periodic": periodic}, f"grid has {complaint}")
+      for shape, periodic, complaint in (
+        ((3, 6), (False, False), "3 x 6 points; it needs at least 4 along axis 0"),
+        ((6, 3), (False, False), "6 x 3 points; it needs at least 4 along axis 1"),
+        ((2, 6), (True, False), "2 x 6 points; it needs at least 3 along axis 0"),
+        ((6, 2), (False, "mirrored"), "6 x 2 points; it needs at least 3 along axis 1"),
+        ((0, 0), (False, False), "0 x 0 points"),
+        ((1, 1), (True, True), "1 x 1 points"),
+    )),
+    *((np.zeros(x), {}, OTHER_SHAPE) for x in ((), (5,), (5, 6, 2), (5, 6, 4), (5, 5, 5, 3))),
+    *((points, named, "a grid must be an array of real numbers")
+      for points in (POINTS + 0j, None, "terrain") for named in ({}, MAP)),
+    *((with_values(POINTS, x, (3, 4, 1), (4, 0, 2)), {},
+       r"grid holds 2 points with infinity, the first at \[3, 4\]") for x in (np.inf, -np.inf)),
+    *((with_values(HEIGHTS, x, (1, 4)), {"spacing": (1.0, y)},
+       r"holds 1 points with infinity, the first at \[1, 4\]")
+      for x in (np.inf, -np.inf) for y in (2.0, -2.0)),
+    (NOTHING, MAP, "all points of grid are missing"),
+    (np.full((9, 9, 3), -1.0), {"nodata": -1}, "all points of grid are missing"),
+    (with_values(NOTHING, 1.0, (4, 4)), MAP, "80 of the 81 points of grid are missing"),
+    (POINTS, {"nodata": "none"}, "nodata must be a number, not 'none'"),
+    *((HEIGHTS, {"spacing": x}, r"elevations \(m, n\) need a spacing of two numbers")
+      for x in (None, (1, 2, 3), ("a", 1), (10**400, 1))),
+    *((HEIGHTS, {"spacing": x}, "spacing must be finite and the map too, dx > 0 and dy not 0")
+      for x in ((0, 1), (1, 0), (-1, 1), (np.nan, 1), (1, np.nan), (np.inf, 1), (1e308, 1))),
+    (POINTS, MAP, "spacing is for elevations"),
+    *((HEIGHTS, MAP | {"periodic": x}, "cannot be periodic")
+      for x in ((True, False), (False, "mirrored"), (True, "pole"))),
+    *((points, {"periodic": ends}, rf"has no pole at points\[{side}\]")
+      for points, ends, side in (
+        (BALL[:, 1:], (True, "pole"), ":, 0"), (BALL[:, :-1], (True, "pole"), ":, -1"),
+        (BALL.swapaxes(0, 1)[1:], ("pole", True), "0"),
+    )),
+    # The corner (0, n) of such a surface is a point of its own, and not in the grid.
+    (POINTS, {"periodic": ("mirrored", "mirrored")}, "cannot be mirrored along both axes"),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("shape", [(), (5,), (5, 6, 2), (5, 6, 4), (5, 5, 5, 3)])
-def test_other_shapes(shape):
-    complaint = r"must have the shape \(m, n, 3\), or \(m, n\) for elevations, not \("
-    refused(complaint, np.zeros(shape))
-
-
-@pytest.mark.parametrize("points", [POINTS + 0j, None, "terrain"], ids=lambda x: type(x).__name__)
-def test_other_things_than_numbers(points):
-    refused("a grid must be an array of real numbers", points)
-    refused("a grid must be an array of real numbers", points, spacing=(1.0, 1.0))
-
-
-def test_nothing_but_missing_points():
-    nothing = np.full((9, 9), np.nan)
-    refused("all points of grid are missing", nothing, spacing=(1.0, 1.0))
-    refused("all points of grid are missing", np.full((9, 9, 3), -1.0), nodata=-1)
-    nothing[4, 4] = 1.0
-    refused("80 of the 81 points of grid are missing", nothing, spacing=(1.0, 1.0))
-    refused("nodata must be a number, not 'none'", POINTS, nodata="none")
-
-
-@pytest.mark.parametrize("spacing", [None, (1, 2, 3), ("a", 1), (10**400, 1)])
-def test_spacing_that_is_none(spacing):
-    refused(r"elevations \(m, n\) need a spacing of two numbers", HEIGHTS, spacing=spacing)
-
-
-@pytest.mark.parametrize(
-    "spacing", [(0, 1), (1, 0), (-1, 1), (np.nan, 1), (1, np.nan), (np.inf, 1), (1e308, 1)]
-)
-def test_spacing_out_of_range(spacing):
-    refused("spacing must be finite and the map too, dx > 0 and dy not 0", HEIGHTS, spacing=spacing)
-
-
-def test_spacing_is_for_elevations_and_ends_are_for_points():
-    refused("spacing is for elevations", POINTS, spacing=(1.0, 1.0))
-    for periodic in ((True, False), (False, "mirrored"), (True, "pole")):
-        refused("cannot be periodic", HEIGHTS, spacing=(1.0, 1.0), periodic=periodic)
+@pytest.mark.parametrize(("points", "named", "complaint"), REFUSED)
+def test_what_is_no_grid_is_refused(points, named, complaint):
+    refused(complaint, gm.Surface.from_grid, points, **named)
 
 
 @pytest.mark.parametrize(
@@ -271,7 +238,8 @@ def test_first_points_nearly_repeated_at_the_end(part, repeats):
     rings = np.stack([np.cos(angles), np.sin(angles)], axis=-1)[:, None]
     points = np.concatenate([rings + np.zeros((1, 5, 1)), np.ones((13, 1, 1)) * np.c_[:5][None]], 2)
     if repeats:
-        refused("repeats its first points at the end of axis 0", points, periodic=(True, False))
+        message = "repeats its first points at the end of axis 0"
+        refused(message, gm.Surface.from_grid, points, periodic=(True, False))
     else:
         assert gm.Surface.from_grid(points, periodic=(True, False)).grid is not None
 
@@ -280,17 +248,5 @@ def test_first_points_nearly_repeated_at_the_end(part, repeats):
 def test_first_points_repeated_at_the_end(name):
     f, periodic, cells = CLOSED[name]
     repeated = f(np.linspace(0, 1, cells[0] + 1)[:, None], np.linspace(0, 1, cells[1] + 1))
-    refused("repeats its first points at the end of axis [01], .*leave them out", repeated,
-            periodic=periodic)  # fmt: skip
-
-
-def test_poles_that_are_none():
-    points = grid_of(ball, (True, "pole"), (12, 7))
-    refused(r"has no pole at points\[:, 0\]", points[:, 1:], periodic=(True, "pole"))
-    refused(r"has no pole at points\[:, -1\]", points[:, :-1], periodic=(True, "pole"))
-    refused(r"has no pole at points\[0\]", points.swapaxes(0, 1)[1:], periodic=("pole", True))
-
-
-def test_mirrored_both_ways():
-    """The corner (0, n) of such a surface is a point of its own, and not in the grid."""
-    refused("cannot be mirrored along both axes", POINTS, periodic=("mirrored", "mirrored"))
+    message = "repeats its first points at the end of axis [01], .*leave them out"
+    refused(message, gm.Surface.from_grid, repeated, periodic=periodic)

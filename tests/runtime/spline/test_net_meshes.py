@@ -8,7 +8,9 @@ from gaussmap.tools.meshes.creased import CreasedMesh
 from numpy.typing import NDArray
 
 from ...refusals import refused
+from ...shapes import unit
 from .test_nets import octants, powell_sabin
+from .test_spline import bezier
 
 Array = NDArray[np.float64]
 PARTS = [1, 3]
@@ -21,10 +23,8 @@ def of_fit(name: str) -> NetSpline:
 def from_patches(spline: NetSpline, mesh: CreasedMesh, parts: int) -> Array:
     """Return how far the corners of each triangle are from points of the patch that it is of."""
     n = parts + 1
-    uv = np.array([(i, j) for i in range(n) for j in range(n - i)]) / parts
-    u, v, w = *uv.T, 1.0 - uv.sum(axis=1)
-    weights = np.stack([u * u, v * v, w * w, 2 * u * v, 2 * u * w, 2 * v * w], axis=1)
-    points = np.einsum("lk,tkx->tlx", weights, spline.control_nets)[mesh.face_index]
+    places = np.array([(i, j, parts - i - j) for i in range(n) for j in range(n - i)]) / parts
+    points = bezier(spline.control_nets[mesh.face_index][:, None], places)[0]
     corners = mesh.vertices[mesh.triangles]
     return np.linalg.norm(corners[:, :, None] - points[:, None], axis=3).min(axis=2)
 
@@ -49,8 +49,7 @@ def test_normals_are_those_of_the_surface(parts: int) -> None:
     spline = gm.fit("torus", (24, 24))
     mesh = gm.Spline.from_nets(spline.control_nets).mesh(parts)
     x, y, z = mesh.vertices.T
-    outwards = np.stack([x - x / np.hypot(x, y), y - y / np.hypot(x, y), z], axis=1)
-    outwards /= np.linalg.norm(outwards, axis=1, keepdims=True)
+    outwards = unit(np.stack([x - x / np.hypot(x, y), y - y / np.hypot(x, y), z], axis=1))
     angles = np.degrees(np.arccos(np.clip((outwards * mesh.normals).sum(axis=1), -1.0, 1.0)))
     assert angles.max() < 1.5 * spline.misfit.angle
     assert np.abs(np.linalg.norm(mesh.normals, axis=1) - 1.0).max() < 1e-14

@@ -1,7 +1,6 @@
 """Splines of users' own nets: joints, and every point with a normal exactly once."""
 
 import pickle
-from fractions import Fraction
 
 import gaussmap as gm
 import numpy as np
@@ -12,6 +11,8 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
 from ...refusals import refused
+from ...shapes import unit
+from ..search.forms import by_brute_force, fractions
 
 Array = NDArray[np.float64]
 SYMMETRIC = np.array([x for x in np.ndindex(5, 5, 5) if x != (2, 2, 2)]) - 2.0
@@ -78,38 +79,14 @@ def _crossing(p: Array, q: Array, a: Array, b: Array) -> float:
     return float(np.linalg.solve(np.column_stack([q - p, a - b]), a - p)[0])
 
 
-def brute_force(nets: Array, normal: Array) -> list[int]:
-    """Return the signs of K of all points with a normal that is on no joint, on fractions."""
-    n = [Fraction(float(x)) for x in normal]
-
-    def dot(p: Array) -> Fraction:
-        return sum((x * Fraction(float(y)) for x, y in zip(n, p, strict=True)), Fraction(0))
-
-    found = []
-    for net in nets:
-        h = [dot(p) for p in net]
-        # n·p as a quadratic polynomial; its critical point by Cramer's rule.
-        a, c = 2 * (h[0] - 2 * h[4] + h[2]), 2 * (h[1] - 2 * h[5] + h[2])
-        b, d, e = 2 * (h[3] - h[4] - h[5] + h[2]), 2 * (h[4] - h[2]), 2 * (h[5] - h[2])
-        if (D := a * c - b * b) == 0:
-            continue
-        u, v = (b * e - c * d) / D, (b * d - a * e) / D
-        if u <= 0 or v <= 0 or u + v >= 1:
-            continue
-        rows = [[Fraction(float(x)) for x in p] for p in net]
-        w = 1 - u - v
-        x_u = [2 * ((p - t) * u + (q - s) * v + (t - r) * w) for p, q, r, s, t in _parts(rows, 0)]
-        x_v = [2 * ((p - t) * v + (q - s) * u + (t - r) * w) for p, q, r, s, t in _parts(rows, 1)]
-        cross = [x_u[i - 2] * x_v[i - 1] - x_u[i - 1] * x_v[i - 2] for i in range(3)]
-        if sum(x * y for x, y in zip(cross, n, strict=True)) > 0:
-            found.append(1 if D > 0 else -1)
-    return found
-
-
-def _parts(rows, which: int):
-    b200, b020, b002, b110, b101, b011 = rows
-    one = (b200, b110, b002, b011, b101) if which == 0 else (b020, b110, b002, b101, b011)
-    return zip(*one, strict=True)
+def check_brute_force(spline: NetSpline, normals: Array) -> None:
+    """Compare patches and signs of all points with those of fractions; no normal is on a joint."""
+    found = gm.sample(spline, normals=normals)
+    rows = [found.normal_index, found.patch_index, np.sign(found.gaussian_curvature)]
+    points = np.stack(rows, axis=1).astype(int)
+    assert sorted(map(tuple, points.tolist())) == by_brute_force(
+        fractions(spline.control_nets), fractions(normals)
+    )
 
 
 def normals_on_joints(spline: NetSpline) -> Array:
@@ -136,10 +113,7 @@ def test_closed_spline_of_8_patches() -> None:
     # Half-way along an edge the normal is (1, 1, 1) x's largest tilt out of the plane of symmetry.
     assert np.allclose(joints.angles, 2.0 * np.degrees(np.arctan(np.sqrt(0.125))), atol=1e-9)
     normals = gm.directions.random(200, seed=1)
-    samples = gm.sample(spline, normals=normals)
-    for k, n in enumerate(normals):
-        mine = samples.gaussian_curvature[samples.normal_index == k]
-        assert sorted(np.sign(mine)) == brute_force(spline.control_nets, n)
+    check_brute_force(spline, normals)
 
 
 @pytest.mark.parametrize("bumps", [0.0, 0.15, 0.6])
@@ -151,10 +125,7 @@ def test_powell_sabin_spline(bumps: float) -> None:
     assert spline.joints.angles.max() < 1e-9
     normals = gm.directions.random(30, seed=2) * [0.6, 0.6, 1.0]
     normals[:, 2] = np.abs(normals[:, 2]) + 0.2
-    samples = gm.sample(spline, normals=normals)
-    for k, n in enumerate(normals / np.linalg.norm(normals, axis=1, keepdims=True)):
-        mine = samples[samples.normal_index == k]
-        assert sorted(np.sign(mine.gaussian_curvature)) == sorted(brute_force(nets, n))
+    check_brute_force(spline, normals)
 
 
 @pytest.mark.parametrize("bumps", [0.0, 0.15, 0.6])
@@ -179,8 +150,7 @@ def test_normals_on_joints_and_at_corners(bumps: float) -> None:
 @pytest.mark.quick_for("torus")
 def test_normals_of_a_closed_spline(name: str, degree: int) -> None:
     spline = gm.Spline.from_nets(gm.fit(name, (8, 6)).control_nets, name=name)
-    normals = np.concatenate([normals_on_joints(spline), gm.icosphere(12), SYMMETRIC])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = unit(np.concatenate([normals_on_joints(spline), gm.icosphere(12), SYMMETRIC]))
     assert (gm.GaussMap(spline).degree(normals) == degree).all()
 
 
@@ -199,9 +169,23 @@ def test_normals_of_a_circle(cells: tuple[int, int], away: float) -> None:
         assert samples.patch_index is not None
         assert samples.component.tolist() == [gm.Component.CURVE] * 2
         assert known.degree(normals).tolist() == [0, 0]
-        own = spline._cross_products(samples.patch_index, samples.uv)
-        own /= np.linalg.norm(own, axis=1, keepdims=True)
+        own = unit(spline._cross_products(samples.patch_index, samples.uv))
         assert np.abs(own - samples.normals).max() <= spline.noise
+
+
+@pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
+def test_poles_are_one_point_with_their_normal(name: str) -> None:
+    """Around them, at distances from none to that of patches, normals have one point, too."""
+    spline = gm.Spline.from_nets(gm.fit(name, (12, 8)).control_nets)
+    away = np.random.default_rng(7).normal(size=(60, 2))
+    away *= np.logspace(-17, -1, 60)[:, None]
+    for pole in (-1.0, 1.0):
+        n = np.column_stack([away, np.full(60, pole)])
+        n[:2, :2] = [(0.0, 0.0), (1e-16, 0.0)]
+        samples = gm.sample(spline, normals=n)
+        assert samples.normal_index.tolist() == list(range(60))
+        assert (samples.gaussian_curvature > 0.0).all()
+        assert np.abs(samples.points[:2, :2]).max() < 1e-9
 
 
 def test_the_same_samples_as_the_library_s_own_spline() -> None:

@@ -8,12 +8,12 @@ from gaussmap.runtime.spline.tips import tips_of
 from numpy.typing import NDArray
 
 from ...products import covering
+from ...shapes import random_rotation, unit
 
 Array = NDArray[np.float64]
 
 HALF = np.pi / 3
-TURN = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
-TURN = TURN * np.sign(np.linalg.det(TURN))
+TURN = random_rotation(5)
 SHAPES = ("lemon", "ogive")
 MOTIONS = {"identity": np.eye(3), "turned": TURN, "small": 1e-6 * TURN}
 
@@ -65,8 +65,7 @@ def collapsed(spline: AnySpline) -> NDArray[np.bool_]:
 def directions() -> Array:
     rng = np.random.default_rng(7)
     parts = [np.eye(3), -np.eye(3), gm.icosphere(8), [[1.3, 0, 1]], rng.normal(size=(500, 3))]
-    n = np.concatenate(parts)
-    return n / np.linalg.norm(n, axis=1, keepdims=True)
+    return unit(np.concatenate(parts))
 
 
 @covering(shape=SHAPES, motion=MOTIONS, nets=[False, True])
@@ -86,8 +85,7 @@ def normals_at_tips(spline: gm.Spline) -> Array:
     """Return normals, and nearly normals, of patches with an edge at a tip, and their opposites."""
     nets = spline.control_nets[collapsed(spline)]
     corner, left, right = (nets[:, k] for k in (0, 4, 5))  # the edge from b200 to b020 is a point
-    n = np.cross(left - corner, right - corner)
-    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    n = unit(np.cross(left - corner, right - corner))
     near = n + 1e-12 * np.random.default_rng(3).normal(size=n.shape)
     return np.concatenate([n, -n, near, -near])
 
