@@ -17,14 +17,6 @@ Array = NDArray[Any]
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
 
 
-def misfit_of(spline: gm.Spline) -> Any:
-    return spline.misfit
-
-
-def points_of(surface: gm.Surface) -> Any:
-    return surface.grid
-
-
 def graph(z: Callable[[Array, Array], Array], scale: float = 1.0, name="graph") -> gm.Surface:
     return gm.Surface.from_callable(
         lambda u, v: scale * np.stack([u, v, z(u, v)], axis=-1), SQUARE, name=name
@@ -55,7 +47,7 @@ def largest_distance(surface: gm.Surface, spline: gm.Spline) -> float:
 def test_tolerance_holds_everywhere(tolerance: float, z) -> None:
     surface = graph(z)
     spline = gm.fit(surface, tolerance=tolerance)
-    assert misfit_of(spline).distance <= tolerance
+    assert spline.misfit.distance <= tolerance
     assert largest_distance(surface, spline) <= 1.1 * tolerance
 
 
@@ -84,11 +76,11 @@ def test_fewer_cells_are_enough_for_a_larger_tolerance() -> None:
 
 def test_normal_tolerance() -> None:
     spline = gm.fit(graph(bump), normal_tolerance=0.5)
-    assert misfit_of(spline).angle <= 0.5
-    assert misfit_of(gm.fit("torus", normal_tolerance=20.0)).distance < 1e-4 * 3.9  # the diagonal
+    assert spline.misfit.angle <= 0.5
+    assert gm.fit("torus", normal_tolerance=20.0).misfit.distance < 1e-4 * 3.9  # the diagonal
     both = gm.fit(graph(bump), tolerance=1e-2, normal_tolerance=0.5)
-    assert misfit_of(both).angle <= 0.5
-    assert misfit_of(both).distance <= 1e-2
+    assert both.misfit.angle <= 0.5
+    assert both.misfit.distance <= 1e-2
 
 
 def test_what_a_coarse_spline_does_not_see_is_found() -> None:
@@ -141,14 +133,14 @@ def test_default_sees_small_features() -> None:
     for z, least in ((fillet, (512, 64)), (bump, (256, 256))):
         spline = gm.fit(graph(z))
         assert spline.cells >= least
-        assert misfit_of(spline).distance < 1e-4
+        assert spline.misfit.distance < 1e-4
 
 
 def test_a_cusp_is_fitted_while_that_makes_the_error_smaller() -> None:
     """Half the cells leave 2^-0.3 = 0.81 of the error along u; steps along v less."""
     cusp = graph(lambda u, v: 0.2 * np.abs(u - 0.123) ** 0.3 + 0.01 * np.sin(90 * v))
     with pytest.warns(gm.GaussmapWarning, match="accuracy of the default is not reached"):
-        assert misfit_of(gm.fit(cusp)).distance < 0.03
+        assert gm.fit(cusp).misfit.distance < 0.03
 
 
 def test_default_wastes_no_cells_on_folds_and_poles() -> None:
@@ -167,7 +159,7 @@ def test_default_is_bounded_and_says_when_it_is_far_off() -> None:
         warnings.simplefilter("error")
         crease = gm.fit(graph(lambda u, v: np.abs(u - 0.4371)))  # no warning: it is near enough
     assert crease.cells[0] * crease.cells[1] <= 2**16
-    assert misfit_of(crease).distance < 1e-3
+    assert crease.misfit.distance < 1e-3
 
 
 # --- data -----------------------------------------------------------------------------------------
@@ -182,10 +174,10 @@ def data(m: int = 90, n: int = 70) -> gm.Surface:
 def test_tolerance_for_data() -> None:
     surface = data()
     spline = gm.fit(surface, tolerance=1e-3)
-    assert misfit_of(spline).distance <= 1e-3
+    assert spline.misfit.distance <= 1e-3
     assert spline.patches < gm.fit(surface).patches
-    places = points_of(surface)[..., 0], points_of(surface)[..., 1]
-    distances = np.linalg.norm(spline.evaluate(*places) - points_of(surface), axis=-1)
+    places = surface.grid[..., 0], surface.grid[..., 1]
+    distances = np.linalg.norm(spline.evaluate(*places) - surface.grid, axis=-1)
     assert distances.max() <= 1e-3
 
 

@@ -6,9 +6,9 @@ import pytest
 from numpy.typing import NDArray
 
 from ...products import covering
-from ...shapes import egg_surface
+from ...shapes import egg_surface, unit
 from .test_fitting import fillet as profile
-from .test_fitting import graph, misfit_of
+from .test_fitting import graph
 
 Array = NDArray[np.float64]
 GENERATOR = np.random.default_rng(3)
@@ -23,10 +23,6 @@ def torus(scale: float = 1.0, shift: float = 0.0, calls: list[int] | None = None
         return scale * np.asarray(exact.function(u, v)) + shift
 
     return gm.Surface.from_callable(f, exact.domain, (True, True), name="torus")
-
-
-def torus_normals(u: Array, v: Array) -> Array:
-    return np.stack([np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)], axis=-1)
 
 
 def angles(first: Array, second: Array) -> Array:
@@ -44,8 +40,8 @@ def test_misfit_is_what_many_random_places_show(cells) -> None:
     spline = gm.fit("torus", cells)
     u, v = GENERATOR.random((2, 50_000)) * 2.0 * np.pi
     distances = np.linalg.norm(spline.evaluate(u, v) - gm.surfaces.torus().evaluate(u, v), axis=1)
-    largest = angles(spline.normals(u, v), torus_normals(u, v)).max()
-    misfit = misfit_of(spline)
+    largest = angles(spline.normals(u, v), gm.surfaces.torus().normals(u, v)).max()
+    misfit = spline.misfit
     assert misfit.distance == pytest.approx(distances.max(), rel=0.05)
     assert misfit.rms == pytest.approx(np.sqrt((distances**2).mean()), rel=0.05)
     assert misfit.angle == pytest.approx(largest, rel=0.12)
@@ -58,12 +54,12 @@ def test_fillet_of_one_percent_is_seen(along: int, cells) -> None:
     u, v = places if along == 0 else places[::-1]
     exact = fillet(along).evaluate(u, v)
     distances = np.linalg.norm(spline.evaluate(u, v) - exact, axis=1)
-    assert misfit_of(spline).distance > 0.8 * distances.max() > 2e-4
-    assert misfit_of(spline).angle > 10.0
+    assert spline.misfit.distance > 0.8 * distances.max() > 2e-4
+    assert spline.misfit.angle > 10.0
 
 
 def test_normals_next_to_poles_count_and_those_at_poles_do_not() -> None:
-    assert misfit_of(gm.fit("sphere", (64, 64))).angle < 0.04
+    assert gm.fit("sphere", (64, 64)).misfit.angle < 0.04
     spline = gm.fit(egg_surface(), (32, 32))
     u, v = np.meshgrid(np.linspace(0.0, 6.0, 100), np.pi / 2 - np.linspace(1e-3, 0.2, 50))
     h = 1e-6
@@ -71,32 +67,28 @@ def test_normals_next_to_poles_count_and_those_at_poles_do_not() -> None:
         egg_surface().evaluate(u + du, v + dv) - egg_surface().evaluate(u - du, v - dv)
         for du, dv in ((h, 0.0), (0.0, h))
     ]
-    normals = np.cross(x_u, x_v)
-    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
-    largest = angles(spline.normals(u, v), normals).max()
-    assert misfit_of(spline).angle > 0.5 * largest > 0.3
+    largest = angles(spline.normals(u, v), unit(np.cross(x_u, x_v))).max()
+    assert spline.misfit.angle > 0.5 * largest > 0.3
 
 
-@pytest.mark.parametrize("scale", [1e-300, 1e-9, 1e9, 1e300])
-def test_misfit_scales(scale: float) -> None:
-    unit, scaled = misfit_of(gm.fit(torus(), (16, 16))), misfit_of(gm.fit(torus(scale), (16, 16)))
-    assert scaled.distance / scale == pytest.approx(unit.distance, rel=1e-9)
-    assert scaled.rms / scale == pytest.approx(unit.rms, rel=1e-9)
-    assert scaled.angle == pytest.approx(unit.angle, abs=1e-6)
-
-
-@pytest.mark.parametrize("shift", [1e3, 1e6])
-def test_misfit_far_from_the_origin(shift: float) -> None:
-    unit = misfit_of(gm.fit(torus(), (16, 16)))
-    moved = misfit_of(gm.fit(torus(1.0, shift), (16, 16)))
-    assert moved.distance == pytest.approx(unit.distance, abs=8e-16 * shift)
-    assert moved.angle == pytest.approx(unit.angle, abs=0.01)  # the error of normals is 1e-4 rad
+@pytest.mark.parametrize(
+    ("scale", "shift"),
+    [*((x, 0.0) for x in (1e-300, 1e-9, 1e9, 1e300)), *((1.0, x) for x in (1e3, 1e6))],
+)
+def test_misfit_scales_and_is_that_far_from_the_origin(scale: float, shift: float) -> None:
+    unit = gm.fit(torus(), (16, 16)).misfit
+    moved = gm.fit(torus(scale, shift), (16, 16)).misfit
+    assert moved.distance / scale == pytest.approx(unit.distance, rel=1e-9, abs=8e-16 * shift)
+    # With a shift, the error of normals is 1e-4 rad.
+    assert moved.angle == pytest.approx(unit.angle, abs=0.01 if shift else 1e-6)
+    if not shift:
+        assert moved.rms / scale == pytest.approx(unit.rms, rel=1e-9)
 
 
 def test_angles_are_measured_as_long_as_coordinates_tell_normals() -> None:
     """Normals of differences are known up to 1e-4 radians where the shift is 1e8, not beyond."""
-    unit = misfit_of(gm.fit(torus(), (16, 16)))
-    known, unknown = (misfit_of(gm.fit(torus(1.0, x), (16, 16))).angle for x in (1e8, 2e8))
+    unit = gm.fit(torus(), (16, 16)).misfit
+    known, unknown = (gm.fit(torus(1.0, x), (16, 16)).misfit.angle for x in (1e8, 2e8))
     assert known == pytest.approx(unit.angle, rel=0.2)
     assert unknown is None
 
@@ -105,7 +97,7 @@ def test_surface_without_normals_has_no_angle() -> None:
     line = gm.Surface.from_callable(
         lambda u, v: np.stack([u, u, u + 0 * v], axis=-1), ((0, 1), (0, 1)), name="line"
     )
-    assert misfit_of(gm.fit(line, (8, 8))).angle is None
+    assert gm.fit(line, (8, 8)).misfit.angle is None
 
 
 def test_surface_is_evaluated_in_proportion_to_the_fit() -> None:
@@ -121,7 +113,7 @@ def test_misfit_is_reported_and_kept_in_files(tmp_path) -> None:
     samples = gm.sample(spline, 50)
     report = samples.report
     reported = report.fit_distance, report.fit_rms, report.fit_angle
-    assert reported == (misfit_of(spline).distance, misfit_of(spline).rms, misfit_of(spline).angle)
+    assert reported == (spline.misfit.distance, spline.misfit.rms, spline.misfit.angle)
     samples.write(tmp_path / "torus.ply")
     assert gm.read_samples(tmp_path / "torus.ply").report == report
     assert samples.offset(0.1).report.fit_distance is None
@@ -142,9 +134,9 @@ def test_misfit_to_elevations_is_that_at_all_of_them(cells) -> None:
     x, y = np.meshgrid(0.1 * np.arange(30), 0.2 * np.arange(40))
     data = np.stack([x, y, heights], axis=-1)
     distances = np.linalg.norm(spline.evaluate(x, y) - data, axis=-1)
-    assert misfit_of(spline).distance == pytest.approx(distances.max(), rel=1e-9)
-    assert misfit_of(spline).rms == pytest.approx(np.sqrt((distances**2).mean()), rel=1e-9)
-    assert misfit_of(spline).angle is None
+    assert spline.misfit.distance == pytest.approx(distances.max(), rel=1e-9)
+    assert spline.misfit.rms == pytest.approx(np.sqrt((distances**2).mean()), rel=1e-9)
+    assert spline.misfit.angle is None
 
 
 # --- a part of the domain -------------------------------------------------------------------------
@@ -153,8 +145,8 @@ def test_misfit_to_elevations_is_that_at_all_of_them(cells) -> None:
 def test_what_is_trimmed_does_not_count() -> None:
     whole = fillet(0)
     part = whole.trimmed(within=lambda u, v: np.abs(u - 0.437) > 0.05)
-    assert misfit_of(gm.fit(whole, (64, 64))).angle > 10.0
-    misfit = misfit_of(gm.fit(part, (64, 64)))
+    assert gm.fit(whole, (64, 64)).misfit.angle > 10.0
+    misfit = gm.fit(part, (64, 64)).misfit
     assert misfit.distance < 1e-15
     assert misfit.angle < 1e-6
     assert gm.fit(part).cells == (64, 64)
@@ -162,4 +154,4 @@ def test_what_is_trimmed_does_not_count() -> None:
 
 def test_tiny_part() -> None:
     part = fillet(0).trimmed(within=lambda u, v: np.hypot(u - 0.437, v - 0.3) < 1e-4)
-    assert misfit_of(gm.fit(part, (16, 16))).distance > 0.0
+    assert gm.fit(part, (16, 16)).misfit.distance > 0.0

@@ -19,6 +19,8 @@ from gaussmap.runtime.proof.kernels.answers import KINDS
 from gaussmap.symbolic.surfaces import CATALOGUE
 from numpy.typing import NDArray
 
+from ...shapes import unit
+
 Array = NDArray[Any]
 
 # --- surfaces -------------------------------------------------------------------------------------
@@ -115,10 +117,6 @@ def nurbs(degree: int, repeated: int) -> tuple[gm.Surface, ProvedIndex]:
     net = np.stack([x, y, z], axis=-1)
     surface = gm.Surface.from_nurbs((degree, degree), (knots, knots), net)
     return surface, new_index(surface, cells=(32, 32))
-
-
-def unit(vectors: Any) -> Array:
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
 
 def random_normals(count: int, seed: int = 0) -> Array:

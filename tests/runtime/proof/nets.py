@@ -17,6 +17,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.spatial import KDTree
 
+from ...shapes import CIRCLE, WEIGHTS, conics
 from .judge import Array, unit
 
 # The cells of a patch along each parameter; points of two patches this near, relative to the size
@@ -34,6 +35,17 @@ def bernstein(degree: int, t: Array, order: int) -> Array:
     for q in range(p + 1, degree + 1):
         rows = q * (np.pad(rows, ((0, 0), (1, 0))) - np.pad(rows, ((0, 0), (0, 1))))
     return rows
+
+
+def quotients(sums: list[Array]) -> Array:
+    """Return x, x_s, x_t, x_ss, x_st, x_tt (6, k, 3) from those of (x w, w)."""
+    point, w = [x[:, :3] for x in sums], [x[:, 3:] for x in sums]
+    x = point[0] / w[0]
+    x_s, x_t = ((point[k] - w[k] * x) / w[0] for k in (1, 2))
+    x_ss = (point[3] - 2.0 * w[1] * x_s - w[3] * x) / w[0]
+    x_st = (point[4] - w[1] * x_t - w[2] * x_s - w[4] * x) / w[0]
+    x_tt = (point[5] - 2.0 * w[2] * x_t - w[5] * x) / w[0]
+    return np.stack([x, x_s, x_t, x_ss, x_st, x_tt])
 
 
 @dataclass(frozen=True)
@@ -89,14 +101,7 @@ class Net:
             np.einsum("ka,kb,abx->kx", along[a], across[b], self.patches[i, j], optimize=True)
             for a, b in orders
         ]
-        point, w = [x[:, :3] for x in found], [x[:, 3:] for x in found]
-        x = point[0] / w[0]
-        x_s, x_t = (point[k] - w[k] * x for k in (1, 2))
-        x_s, x_t = x_s / w[0], x_t / w[0]
-        x_ss = (point[3] - 2.0 * w[1] * x_s - w[3] * x) / w[0]
-        x_st = (point[4] - w[1] * x_t - w[2] * x_s - w[4] * x) / w[0]
-        x_tt = (point[5] - 2.0 * w[2] * x_t - w[5] * x) / w[0]
-        return np.stack([x, x_s, x_t, x_ss, x_st, x_tt])
+        return quotients(found)
 
     def turned(self, uv: Array, normals: Array) -> Array:
         """Return the least angle (k,) of unit normals with those of the patches at parameters."""
@@ -180,9 +185,6 @@ def wrong_at(net: Net, normals: Array, found: gm.Samples) -> set[int]:
     return wrong
 
 
-CIRCLE = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
-
-
 def revolved(
     profile: Any, weights: Any, knots: Array, matrix: Array, digits: int = 17, circle: Any = CIRCLE
 ) -> Net:  # fmt: skip
@@ -190,9 +192,8 @@ def revolved(
 
     Control points and weights are rounded to some digits. Another `circle` (9, 2) has corners.
     """
-    around = [1.0, np.sqrt(0.5)] * 4 + [1.0]
     points = np.array([[(r * x, r * y, z) for x, y in circle] for r, z in profile]) @ matrix.T
     rounded = np.vectorize(lambda x: float(f"%.{digits - 1}e" % x))
-    of_circle = np.repeat(np.arange(5.0), [3, 2, 2, 2, 3])
     degree = len(knots) - len(profile) - 1
-    return Net((degree, 2), (knots, of_circle), rounded(points), rounded(np.outer(weights, around)))
+    all_weights = rounded(np.outer(weights, WEIGHTS))
+    return Net((degree, 2), (knots, conics(CIRCLE)), rounded(points), all_weights)

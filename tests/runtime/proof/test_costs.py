@@ -3,17 +3,9 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.proof.index import ProvedIndex
 
 from ...shapes import CIRCLE, WEIGHTS, conics
-from .judge import unit
-
-
-def index_of(surface: gm.Surface, cells: int = 64) -> ProvedIndex:
-    assert surface.tape is not None
-    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, (cells, cells))
-    assert index is not None
-    return index
+from .judge import new_index, unit
 
 
 def heavy(weight: float) -> gm.Surface:
@@ -29,7 +21,7 @@ def heavy(weight: float) -> gm.Surface:
 def test_few_cells_are_cut_where_tangents_are_nearly_parallel() -> None:
     half = "1/2"
     height = f"1/(1/100000 + (u - {half})**2 + (v - {half})**2)"
-    index = index_of(gm.Surface.from_sympy(("u", "v", height), ("u", "v"), ((0, 1), (0, 1))))
+    index = new_index(gm.Surface.from_sympy(("u", "v", height), ("u", "v"), ((0, 1), (0, 1))))
     assert len(index.index.cells.place) < 4 * 64**2
     slopes = np.array([[-0.1, -0.2], [-0.3, 0.2]])
     found = index.query(unit(np.column_stack([-slopes, np.ones(2)])))
@@ -43,7 +35,7 @@ def test_few_cells_are_cut_where_tangents_are_nearly_parallel() -> None:
 def test_a_heavy_control_point_leaves_nothing_open() -> None:
     surface = heavy(1000.0)
     normal = np.array([[0.1, 0.2, 1.0]]) / np.sqrt(1.05)
-    found = index_of(surface).query(normal)
+    found = new_index(surface).query(normal)
     # Newton's method from 400,000 places, denser along the sides, ends at these two.
     places = [[0.244235, 0.999824], [0.944392, 0.012879]]
     np.testing.assert_allclose(found.uv, places, rtol=0.0, atol=1e-6)
@@ -52,7 +44,7 @@ def test_a_heavy_control_point_leaves_nothing_open() -> None:
 
 @pytest.mark.parametrize("weight", [1e5, 1e9])
 def test_cells_are_bounded_where_cutting_does_not_help(weight: float) -> None:
-    index = index_of(heavy(weight))
+    index = new_index(heavy(weight))
     assert len(index.index.cells.place) + len(index.unbounded) <= 24 * 64**2
 
 
@@ -63,7 +55,7 @@ def test_few_boxes_are_left_where_a_side_is_singular() -> None:
     net = np.array([[(a * x, a * y, b) for a, b in zip(r, z, strict=True)] for x, y in CIRCLE])
     weights = np.outer(WEIGHTS, np.ones(len(r)))
     knots = conics(CIRCLE), [*[0.0] * 6, 1.0, 2.0, *[3.0] * 6]
-    index = index_of(gm.Surface.from_nurbs((2, 5), knots, net @ turn.T, weights))
+    index = new_index(gm.Surface.from_nurbs((2, 5), knots, net @ turn.T, weights))
     with index.room() as rooms:
         rooms.boxes.following[:] = np.nan
     angles, rise = (x.ravel() for x in np.meshgrid(np.linspace(0.0, 6.0, 25), [0.0, 0.3]))

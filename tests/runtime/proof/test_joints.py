@@ -1,6 +1,5 @@
 """The proof at joints: lines where smooth parts of a surface meet, with points in closed form."""
 
-import math
 from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
@@ -11,6 +10,7 @@ import pytest
 
 from ...shapes import CIRCLE, MERIDIAN, WEIGHTS, conics
 from .judge import Array, counts, curvature_at, near, new_index, normals_at, nurbs, unit
+from .nets import bernstein
 
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
 AROUND = unit(np.concatenate([gm.icosphere(8), AXES]))
@@ -48,14 +48,11 @@ def torus(digits: int) -> Asked:
     return Asked(surface, normals, [0.7 * normals + ring, 0.7 * normals - ring], [1, -1])
 
 
-def bernstein(values: Array, degrees: tuple[int, int]) -> Array:
+def interpolated(values: Array, degrees: tuple[int, int]) -> Array:
     """Return control points of the polynomial that has values (p + 1, q + 1, 3) at equal steps."""
     for axis, p in enumerate(degrees):
-        t = np.linspace(0.0, 1.0, p + 1)
-        k = np.arange(p + 1)
-        binomial = np.array([math.comb(p, i) for i in range(p + 1)])
-        basis = binomial * t[:, None] ** k * (1.0 - t[:, None]) ** (p - k)
-        values = np.moveaxis(np.tensordot(np.linalg.inv(basis), values, (1, axis)), 0, axis)
+        inverse = np.linalg.inv(bernstein(p, np.linspace(0.0, 1.0, p + 1), 0))
+        values = np.moveaxis(np.tensordot(inverse, values, (1, axis)), 0, axis)
     return values
 
 
@@ -72,7 +69,7 @@ def graph(sign: int, ratio: float, slope: float, skew: float) -> Asked:
 
     s, t = np.meshgrid(np.linspace(0.0, 1.0, 5), np.linspace(0.0, 1.0, 4), indexing="ij")
     parts = [(s, t), (1.0 + 0.3 * s * (ratio + slope * t), t + 0.06 * skew * s)]
-    nets = [bernstein(np.stack([x, y, height(x, y)], axis=-1), (4, 3)) for x, y in parts]
+    nets = [interpolated(np.stack([x, y, height(x, y)], axis=-1), (4, 3)) for x, y in parts]
     knots = np.repeat([0.0, 1.0, 2.0], [5, 4, 5]), np.repeat([0.0, 1.0], 4)
     surface = gm.Surface.from_nurbs((4, 3), knots, np.concatenate([nets[0], nets[1][1:]]))
     y = np.linspace(0.1, 0.9, 20)

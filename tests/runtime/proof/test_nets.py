@@ -10,15 +10,13 @@ import pytest
 from numpy.polynomial import Polynomial
 from scipy.interpolate import BPoly, PPoly
 
+from ...shapes import CIRCLE, MERIDIAN, WEIGHTS, bezier
 from .judge import Array, unit
 from .nets import Net, revolved, wrong_at
 
 HALF = np.sqrt(0.5)
 SHEAR = np.array([[2, 0.3, 0.1], [0, 1.5, 0.4], [0.2, 0, 1]])
 PLAIN = np.eye(3)
-ARCS = [1, HALF, 1, HALF, 1, HALF, 1, HALF, 1]
-CIRCLE = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)])
-MERIDIAN = [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1)]
 VASE = [(0, -6), (4, -6), (7, -3), (3.5, 0.5), (5, 4), (3, 7), (0, 7)]
 BOTTLE = [(0, -3), (3, -3), (1.2, -1), (2.5, 1.5), (2, 3.5), (0, 3.5)]
 CAPSULE = [(0, -1), (1, -1), (1, 0), (1, 0.5), (1, 1), (1, 2), (0, 2)]
@@ -34,12 +32,6 @@ ROUNDED = np.array(
 
 def clamped(degree: int, *inner: float) -> Array:
     return np.array([*[0.0] * (degree + 1), *inner, *[1.0] * (degree + 1)])
-
-
-def bezier(degree: int, count: int) -> Array:
-    """Return the knots of joined Bézier curves with `count` control points."""
-    spans = (count - 1) // degree
-    return np.repeat(np.arange(spans + 1.0), [degree + 1, *[degree] * (spans - 1), degree + 1])
 
 
 def conics(profile: Any, weights: Any, matrix: Array = PLAIN, digits: int = 17) -> Net:
@@ -62,12 +54,12 @@ def graph(degrees: tuple[int, int], knots: tuple[Array, Array], height: float) -
 RING, FLAT = CIRCLE * 0.7 + np.array([2, 0]), ROUNDED + np.array([3, 0])
 # Surfaces, and their Euler characteristics if they are closed.
 NETS: dict[str, tuple[Callable[[], Net], int | None]] = {
-    "ellipsoid, sheared": (partial(conics, MERIDIAN, ARCS[:5], SHEAR), 2),
+    "ellipsoid, sheared": (partial(conics, MERIDIAN, WEIGHTS[:5], SHEAR), 2),
     "ellipsoid, 10 digits": (
-        partial(conics, MERIDIAN, ARCS[:5], np.diag([15.0, 20, 5]), digits=10), 2
+        partial(conics, MERIDIAN, WEIGHTS[:5], np.diag([15.0, 20, 5]), digits=10), 2
     ),
-    "torus, sheared": (partial(conics, RING, ARCS, SHEAR), 0),
-    "torus, 10 digits": (partial(conics, RING, ARCS, PLAIN, digits=10), 0),
+    "torus, sheared": (partial(conics, RING, WEIGHTS, SHEAR), 0),
+    "torus, 10 digits": (partial(conics, RING, WEIGHTS, PLAIN, digits=10), 0),
     "vase": (partial(revolved, VASE, [1] * 7, clamped(3, 0.25, 0.5, 0.75), PLAIN), 2),
     "bottle": (
         partial(revolved, BOTTLE, [1, 0.8, 1.3, 0.7, 1.1, 1], clamped(5), np.diag([1, 0.8, 1])), 2
@@ -104,7 +96,7 @@ CREASED: dict[str, tuple[Callable[[], Net], int]] = {
     ),
     # The normals of both sides differ by about 1e-8 rad.
     "ellipsoid, 8 digits": (
-        partial(conics, MERIDIAN, ARCS[:5], np.diag([15.0, 20, 5]), digits=8), 2
+        partial(conics, MERIDIAN, WEIGHTS[:5], np.diag([15.0, 20, 5]), digits=8), 2
     ),
 }  # fmt: skip
 
@@ -120,7 +112,15 @@ def directions(frequency: int, count: int) -> Array:
     return unit(np.concatenate([*axes, gm.icosphere(frequency), *tilted, random]))
 
 
-def check(name: str, normals: Array) -> None:
+@pytest.mark.parametrize(
+    ("name", "normals"),
+    [
+        # Segments of cylinders, and discs at poles, which end inside of the surface.
+        *((x, directions(1, 1)[:40]) for x in ("capsule", "can")),
+        *(pytest.param(x, directions(8, 10_000), marks=pytest.mark.slow) for x in NETS),
+    ],
+)
+def test_components_of_nurbs(name: str, normals: Array) -> None:
     make, euler = NETS[name]
     net = make()
     known = gm.GaussMap(net.surface)
@@ -134,19 +134,14 @@ def check(name: str, normals: Array) -> None:
         assert set(np.flatnonzero(degree != euler // 2).tolist()) <= listed
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NETS)
-def test_components_of_nurbs(name: str) -> None:
-    check(name, directions(8, 10_000))
-
-
-@pytest.mark.parametrize("name", ["capsule", "can"])
-def test_regions_with_one_normal_have_an_index(name: str) -> None:
-    """Segments of cylinders, and discs at poles, which end inside of the surface."""
-    check(name, directions(1, 1)[:40])
-
-
-def check_creases(name: str, normals: Array) -> None:
+@pytest.mark.parametrize(
+    ("name", "normals"),
+    [
+        ("lens", directions(1, 1)[:60]),
+        *(pytest.param(x, directions(8, 10_000), marks=pytest.mark.slow) for x in CREASED),
+    ],
+)
+def test_creases_have_the_normals_between_those_of_both_sides(name: str, normals: Array) -> None:
     """Judged by the slopes of the height on both sides, and by the sum of indices."""
     make, euler = CREASED[name]
     net = make()
@@ -154,6 +149,8 @@ def check_creases(name: str, normals: Array) -> None:
     found = known.points(normals)
     assert found.report.undecided == ()
     np.testing.assert_array_equal(known.degree(normals), euler // 2)
+    if name == "lens":
+        np.testing.assert_array_equal(known.count(normals), 1)
     assert found.component is not None
     points = found[found.component == gm.Component.CREASE]
     assert len(points) > 0
@@ -172,18 +169,6 @@ def check_creases(name: str, normals: Array) -> None:
         streamed = gm.Samples.concatenate(gm.sample_stream(net.surface, normals=normals, chunk=100))
         np.testing.assert_array_equal(streamed.component, found.component)
         np.testing.assert_array_equal(streamed.points, found.points)
-
-
-def test_creases_have_the_normals_between_those_of_both_sides() -> None:
-    normals = directions(1, 1)[:60]
-    check_creases("lens", normals)
-    np.testing.assert_array_equal(gm.GaussMap(CREASED["lens"][0]().surface).count(normals), 1)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", CREASED)
-def test_creases_at_many_normals(name: str) -> None:
-    check_creases(name, directions(8, 10_000))
 
 
 def test_zeros_along_a_crease() -> None:
@@ -319,7 +304,7 @@ def test_poles_of_halves_are_one_point() -> None:
 def rounded_ellipsoid(digits: int) -> tuple[Net, Array]:
     """Return an ellipsoid and the rotation (3, 3) of its axes."""
     turned, _ = np.linalg.qr(np.array([(3.0, 1, 2), (1, 4, 1), (2, -1, 5)]))
-    return conics(MERIDIAN, ARCS[:5], turned @ np.diag([3.0, 2, 1]), digits=digits), turned
+    return conics(MERIDIAN, WEIGHTS[:5], turned @ np.diag([3.0, 2, 1]), digits=digits), turned
 
 
 @pytest.mark.slow

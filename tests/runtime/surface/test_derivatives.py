@@ -3,24 +3,12 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-import sympy as sp
 from gaussmap.runtime.surface.derivatives import NAMES
-from gaussmap.symbolic.surfaces import CATALOGUE
 
 from ...refusals import refused
 from ...shapes import saddle
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
-
-
-def exact_jets(surface):
-    """Return SymPy's derivatives of a surface of the catalogue as a function."""
-    values = {p.symbol: sp.Rational(p.default) for p in surface.parameters}
-    x = sp.Matrix(surface.position).subs(values)
-    x_u, x_v = x.diff(surface.u), x.diff(surface.v)
-    rows = (x, x_u, x_v, x_u.diff(surface.u), x_u.diff(surface.v), x_v.diff(surface.v))
-    f = sp.lambdify((surface.u, surface.v), [row.flat() for row in rows])
-    return lambda u, v: np.array([f(*place) for place in zip(u, v, strict=True)], float)
 
 
 def places(domain, count=40, seed=0):
@@ -38,16 +26,12 @@ def relative_errors(found, expected):
     return np.abs(found - expected).max(axis=(0, 2)) / np.abs(expected).max()
 
 
-@pytest.mark.parametrize("name", CATALOGUE)
-def test_derivatives_of_the_catalogue(name):
-    surface = gm.surfaces.surface(name)
+def test_derivatives_of_numbers_and_arrays():
+    surface = gm.surfaces.torus()
     u, v = places(surface.domain)
     found = surface.derivatives(u, v)
     assert found.shape == (len(u), 6, 3)
     assert np.array_equal(found, surface.jets(u, v))
-    exact, ulp = exact_jets(CATALOGUE[name])(u, v), np.spacing(np.abs(found).max())
-    np.testing.assert_allclose(found, exact, rtol=0, atol=50 * ulp)
-    assert np.allclose(found[:, 0], surface.evaluate(u, v), rtol=0, atol=8 * ulp)
     assert surface.derivatives(u[:, None], v[:7]).shape == (len(u), 7, 6, 3)
     assert surface.derivatives(0.5, 0.25).shape == (6, 3)
 
@@ -57,22 +41,19 @@ def test_derivatives_of_the_catalogue(name):
 )
 def test_numerical_derivatives(name):
     """Open, periodic and mirrored ends, and poles; the function is never called outside."""
-    surface = CATALOGUE[name]
-    values = {p.symbol: sp.Rational(p.default) for p in surface.parameters}
-    f = sp.lambdify((surface.u, surface.v), [x.xreplace(values) for x in surface.position])
-    domain = gm.surfaces.surface(name).domain
-    (u0, u1), (v0, v1) = domain
+    surface = gm.surfaces.surface(name)
+    (u0, u1), (v0, v1) = surface.domain
 
     def inside(u, v):
         assert u.min() >= u0
         assert u.max() <= u1
         assert v.min() >= v0
         assert v.max() <= v1
-        return np.stack(f(u, v), axis=-1)
+        return surface.evaluate(u, v)
 
-    u, v = places(domain)
-    found = gm.Surface(name, inside, domain, surface.boundary).derivatives(u, v)
-    errors = relative_errors(found, exact_jets(surface)(u, v))
+    u, v = places(surface.domain)
+    found = gm.Surface(name, inside, surface.domain, surface.boundary).derivatives(u, v)
+    errors = relative_errors(found, surface.jets(u, v))
     assert errors[0] < 1e-15
     assert errors[1:3].max() < 2e-12
     assert errors[3:].max() < 1e-9

@@ -1,21 +1,21 @@
 """Surfaces that are moved, mirrored and flipped: points, derivatives, normals, ends."""
 
+from typing import Any
+
 import gaussmap as gm
 import numpy as np
 import pytest
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import saddle
+from ...shapes import random_rotation, saddle
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
-
-
-ROTATION = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
-ROTATION *= np.sign(np.linalg.det(ROTATION))
+ROTATION = random_rotation(1)
 MAPS = {
     "rotated": ROTATION,
     "mirrored": np.diag([1.0, -1.0, 1.0]),
+    "mirrored along x": np.diag([-1.0, 1.0, 1.0]),
     "turned and mirrored": -ROTATION,
     "scaled": 1e-9 * ROTATION,
     "sheared": np.array([[1.0, 0.5, 0.0], [0.0, 2.0, 0.25], [0.0, 0.0, 3.0]]),
@@ -31,56 +31,51 @@ def inside(surface):
     return u0 + (u1 - u0) * s, v0 + (v1 - v0) * t
 
 
-def moved_jets(jets, matrix, shift):
-    return jets @ matrix.T + np.eye(6)[:, :1] * shift
-
-
 TURNED = np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])[:, None]  # signs of derivatives
+ENDS: list[Any] = [(False, False), (True, True), ("mirrored", False), (True, "mirrored")]
+POINTS = np.random.default_rng(3).normal(size=(5, 6, 3)) + 3.0 * np.indices((5, 6, 1))[0]
+HEIGHTS = np.random.default_rng(5).random((9, 10))
+HEIGHTS[2, 3] = np.nan
+MOVED = {
+    **{name: gm.surfaces.surface(name) for name in gm.surfaces.names()},
+    "sympy": gm.Surface.from_sympy(("u*cos(v)", "u*sin(v)", "v**2"), "uv", SQUARE),
+    "callable": gm.Surface.from_callable(saddle, SQUARE),
+    **{f"grid, {ends}": gm.Surface.from_grid(POINTS, periodic=ends) for ends in ENDS},
+    "hill": gm.Surface.from_grid(HEIGHTS, spacing=(1.0, 1.0)),
+}
 
 
-@covering(
-    matrix=MAPS.values(),
-    surface=[
-        gm.surfaces.torus(),
-        gm.Surface.from_sympy(("u*cos(v)", "u*sin(v)", "v**2"), "uv", SQUARE),
-        gm.Surface.from_callable(saddle, SQUARE),
-    ],
-)
-def test_transformed(surface, matrix):
+@covering(name=MOVED, matrix=MAPS.values())
+def test_transformed(name, matrix):
+    """Points, derivatives, ends, and what is missing: all is as before the map."""
+    surface, moved = MOVED[name], MOVED[name].transformed(matrix)
     linear, shift = matrix[:3, :3], matrix[:3, 3] if len(matrix) == 4 else np.zeros(3)
-    moved = surface.transformed(matrix)
     turned = np.linalg.det(linear) < 0.0
     u, v = inside(surface)
-    own = surface.domain[0][0] + surface.domain[0][1] - u if turned else u
-    expected = moved_jets(surface.derivatives(own, v), linear, shift)
-    expected *= TURNED if turned else 1.0
+    own = sum(surface.domain[0]) - u if turned else u
+    if surface.trim is not None:
+        there = surface.trim.contains(np.stack([own, v], axis=1))
+        assert 0 < there.sum() < len(there)
+        assert np.array_equal(moved.trim.contains(np.stack([u, v], axis=1)), there)
+        u, v, own = u[there], v[there], own[there]
+    expected = surface.evaluate(own, v) @ linear.T + shift
     size = np.abs(expected).max()
-    rounding = 1e-8 if surface.function is saddle else 1e-15  # own is u after rounding
-    np.testing.assert_allclose(moved.derivatives(u, v), expected, rtol=0, atol=4 * rounding * size)
-    np.testing.assert_allclose(moved.evaluate(u, v), expected[:, 0], rtol=0, atol=4e-15 * size)
-    assert (moved.name, moved.domain, moved.boundary) == (
-        surface.name,
-        surface.domain,
-        surface.boundary,
-    )
-
-
-@pytest.mark.parametrize("name", gm.surfaces.names())
-def test_mirrored_surfaces_of_the_catalogue(name):
-    """The ends, mirrored ones and poles too, are as before; normals are on the same side."""
-    surface = gm.surfaces.surface(name)
-    mirrored = surface.transformed(np.diag([-1.0, 1.0, 1.0]))
-    u, v = inside(surface)
-    own = sum(surface.domain[0]) - u
-    assert np.allclose(mirrored.evaluate(u, v), surface.evaluate(own, v) * (-1, 1, 1), atol=1e-14)
-    assert gm.fit(mirrored, (8, 8)).boundary == surface.boundary  # which checks the ends
-    again = mirrored.transformed(np.diag([-1.0, 1.0, 1.0]))
+    np.testing.assert_allclose(moved.evaluate(u, v), expected, rtol=0, atol=1e-14 * size)
+    assert (moved.name, moved.domain) == (surface.name, surface.domain)
+    assert moved.boundary == surface.boundary
+    assert gm.fit(moved, (8, 8)).boundary == gm.fit(surface, (8, 8)).boundary  # checks the ends
+    again = surface.flipped().flipped()
+    if surface.grid is not None:
+        assert np.array_equal(gm.fit(moved).evaluate(u, v), moved.evaluate(u, v))
+        before, after = surface.grid, again.grid
+        assert name == "hill" or (after == before).all()  # its gaps are filled
+        return
     assert (again.evaluate(u, v) == surface.evaluate(u, v)).all()
-
-
-def normals(surface, u, v):
-    normal = np.cross(*np.moveaxis(surface.derivatives(u, v)[..., 1:3, :], -2, 0))
-    return normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    jets = surface.derivatives(own, v) @ linear.T + np.eye(6)[:, :1] * shift
+    jets *= TURNED if turned else 1.0
+    size = np.abs(jets).max()
+    rounding = 1e-8 if name == "callable" else 1e-15  # own is u after rounding
+    np.testing.assert_allclose(moved.derivatives(u, v), jets, rtol=0, atol=4 * rounding * size)
 
 
 def test_normals_stay_on_the_same_side():
@@ -90,32 +85,8 @@ def test_normals_stay_on_the_same_side():
         moved = sphere.transformed(matrix)
         centre = matrix[:3, 3] if len(matrix) == 4 else 0.0
         spokes = moved.evaluate(u, v) - centre
-        assert (np.sum(spokes * normals(moved, u, v), axis=-1) > 0.0).all()
-        assert (np.sum(spokes * normals(moved.flipped(), -u, v), axis=-1) < 0.0).all()
-
-
-@pytest.mark.parametrize(
-    "periodic", [(False, False), (True, True), ("mirrored", False), (True, "mirrored")]
-)
-def test_points_are_transformed(periodic):
-    points = np.random.default_rng(3).normal(size=(5, 6, 3)) + 3.0 * np.indices((5, 6, 1))[0]
-    surface = gm.Surface.from_grid(points, periodic=periodic)
-    u, v = inside(surface)
-    for name, matrix in MAPS.items():
-        if name == "translated":
-            continue
-        moved = surface.transformed(matrix)
-        turned = np.linalg.det(matrix) < 0.0
-        own = sum(surface.domain[0]) - u if turned else u
-        expected = surface.evaluate(own, v) @ matrix.T
-        np.testing.assert_allclose(
-            moved.evaluate(u, v), expected, rtol=0, atol=1e-14 * np.abs(expected).max()
-        )
-        assert np.array_equal(gm.fit(moved).evaluate(u, v), moved.evaluate(u, v))
-    again, first = surface.flipped().flipped().grid, surface.grid
-    assert again is not None
-    assert first is not None
-    assert np.array_equal(again, first)
+        assert (np.sum(spokes * moved.normals(u, v), axis=-1) > 0.0).all()
+        assert (np.sum(spokes * moved.flipped().normals(-u, v), axis=-1) < 0.0).all()
 
 
 def polar(r, phi):
@@ -173,25 +144,6 @@ def test_pieces_of_a_moved_surface():
     assert names == [x.name for x in whole.pieces()]
     smooth = gm.surfaces.torus().flipped()
     assert smooth.pieces() == (smooth,)
-
-
-def test_missing_points_are_missing_after_a_map():
-    heights = np.random.default_rng(5).random((9, 10))
-    heights[2, 3] = np.nan
-    hill = gm.Surface.from_grid(heights, spacing=(1.0, 1.0))
-    uv = np.random.default_rng(0).uniform(0.0, 8.0, (100, 2))
-    for matrix in (ROTATION, -ROTATION):
-        moved = hill.transformed(matrix)
-        own = np.where([matrix is ROTATION, True], uv, 9.0 - uv)
-        there = hill.trim.contains(own)
-        assert 0 < there.sum() < 100
-        assert np.array_equal(moved.trim.contains(uv), there)
-        np.testing.assert_allclose(
-            moved.evaluate(*uv[there].T),
-            hill.evaluate(*own[there].T) @ matrix.T,
-            rtol=0,
-            atol=1e-13,
-        )
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """NURBS surfaces: their values and derivatives, what defines them, and where their normals turn."""
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import gaussmap as gm
@@ -8,7 +9,6 @@ import geomdl.BSpline
 import geomdl.NURBS
 import numpy as np
 import pytest
-from gaussmap.runtime.surface.nurbs import Nurbs
 from scipy.interpolate import NdBSpline
 from splipy import surface_factory
 from splipy.basis import BSplineBasis
@@ -17,6 +17,7 @@ from splipy.volume import Volume
 
 from ...refusals import refused
 from ...shapes import CIRCLE, HALF, MERIDIAN, WEIGHTS, revolved
+from ..proof.nets import quotients
 
 RNG = np.random.default_rng(8)
 
@@ -27,10 +28,6 @@ def torus(major=2.0, minor=0.5, **named):
 
 def sphere():
     return revolved(MERIDIAN, HALF)
-
-
-def nurbs_of(surface) -> Any:
-    return surface.function
 
 
 def random_parameters(surface, count):
@@ -51,18 +48,10 @@ def random_knots(degree, clamped):
 
 
 def jets_of_scipy(degrees, knots, points, weights, uv):
-    """Return 2-jets by the quotient rule from SciPy's derivatives of x w and w."""
+    """Return 2-jets from SciPy's derivatives of x w and w."""
     spline = NdBSpline(knots, np.concatenate([points * weights, weights], axis=2), degrees)
     orders = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
-    sums = [spline(uv, nu=nu) for nu in orders]
-    A, A_u, A_v, A_uu, A_uv, A_vv = (x[:, :3] for x in sums)
-    w, w_u, w_v, w_uu, w_uv, w_vv = (x[:, 3:] for x in sums)
-    x = A / w
-    x_u, x_v = (A_u - w_u * x) / w, (A_v - w_v * x) / w
-    x_uu = (A_uu - 2 * w_u * x_u - w_uu * x) / w
-    x_uv = (A_uv - w_u * x_v - w_v * x_u - w_uv * x) / w
-    x_vv = (A_vv - 2 * w_v * x_v - w_vv * x) / w
-    return np.stack([x, x_u, x_v, x_uu, x_uv, x_vv], axis=1)
+    return quotients([spline(uv, nu=nu) for nu in orders]).swapaxes(0, 1)
 
 
 @pytest.mark.parametrize("p", range(1, 6))
@@ -126,12 +115,6 @@ def test_ends_are_those_of_the_domain_and_period():
 # --- closing --------------------------------------------------------------------------------------
 
 
-def test_boundary_conditions_are_found():
-    periodic, both = ("periodic", "periodic"), ("open", "open")
-    assert torus().boundary == (periodic, periodic)
-    assert sphere().boundary == (periodic, both)
-
-
 def extruded(profile, degree=1, knots=None):
     """Return a profile (x, y) of uniform knots, extruded along z."""
     profile = np.asarray(profile, dtype=float)
@@ -146,66 +129,65 @@ def extruded(profile, degree=1, knots=None):
 CORNERS = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
 
 
-def test_a_seam_on_an_edge_is_open_and_a_seam_on_a_face_is_not():
-    assert extruded([*CORNERS, CORNERS[0]]).boundary[0] == ("open", "open")
-    assert extruded([(1, 0), *CORNERS, (1, 0)]).boundary[0] == ("periodic", "periodic")
-    assert extruded(CORNERS).boundary[0] == ("open", "open")
+CUBIC = [0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4]
+OPEN, PERIODIC = ("open", "open"), ("periodic", "periodic")
 
 
-def test_given_boundary_conditions_come_first():
-    surface = torus(periodic=(True, False))
-    assert surface.boundary == (("periodic", "periodic"), ("open", "open"))
+def slope(degrees):
+    return math.tan(math.radians(degrees))
 
 
-# --- lines where the normal turns -----------------------------------------------------------------
+def cubic(*middle):
+    """Return a corner, if three control points on a simple knot coincide, and knots."""
+    return extruded([(0, 0), (1, 0), (2, 0), *middle], 3, CUBIC)
 
 
-def test_edges_of_a_sweep():
-    surface = extruded([(1, 0), *CORNERS, (1, 0)])
+def with_speed(speed):
+    return extruded([(0, 0), (speed, 0), (speed, 1), (-1, 1), (-1, 0), (0, 0)])
+
+
+# Surfaces, the conditions at the ends of u, and the lines along which the normal turns.
+LINES = {
+    "torus": (torus(), PERIODIC, ()),
+    "torus, half said to be open": (torus(periodic=(True, False)), PERIODIC, ()),
+    "sphere": (sphere(), PERIODIC, ()),
+    "open square": (extruded(CORNERS), OPEN, (1, 2)),
+    "seam on an edge": (extruded([*CORNERS, CORNERS[0]]), OPEN, (1, 2, 3)),
+    "seam on a face": (extruded([(1, 0), *CORNERS, (1, 0)]), PERIODIC, (1, 2, 3, 4)),
+    # Multiple knots on a smooth surface.
+    "plane": (extruded([(0, 0), (1, 0), (3, 0), (4, 0)]), OPEN, ()),
+    "small angle": (extruded([(0, 0), (1, 0), (2, slope(0.09))]), OPEN, ()),
+    "larger angle": (extruded([(0, 0), (1, 0), (2, slope(0.11))]), OPEN, (1,)),
+    # A spline of a plane would fold where a tangent becomes five times longer.
+    "tangent, longer": (extruded([(0, 0), (1, 0), (3.9, 0)]), OPEN, ()),
+    "tangent, much longer": (extruded([(0, 0), (1, 0), (4.1, 0)]), OPEN, (1,)),
+    "tangent at a seam, longer": (with_speed(2.9), PERIODIC, (1, 2, 3, 4)),
+    "tangent at a seam, much longer": (with_speed(3.1), OPEN, (1, 2, 3, 4)),
+    "edge on a simple knot": (cubic((2, 0), (2, 0), (2, 1), (2, 2)), OPEN, (2,)),
+    "nearly": (cubic((math.nextafter(2.0, 3.0), 0), (2, 0), (2, 1), (2, 2)), OPEN, (2,)),
+    "rounded": (cubic((2, 0), (2.01, 0), (2, 1), (2, 2)), OPEN, ()),
+    "straight": (cubic((2, 0), (2, 0), (3, 0), (4, 0)), OPEN, ()),
+}
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_ends_and_lines_where_the_normal_turns(name):
+    surface, ends, lines = LINES[name]
+    assert surface.boundary == (ends, PERIODIC if name == "torus" else OPEN)
+    assert surface.function.creases == (lines, ())
     pieces = surface.pieces()
-    assert nurbs_of(surface).creases == ((1.0, 2.0, 3.0, 4.0), ())
-    assert [x.domain[0] for x in pieces] == [(k, k + 1) for k in range(5)]
-    assert all(x.boundary == (("open", "open"), ("open", "open")) for x in pieces)
+    if not lines:
+        assert pieces == (surface,)
+        return
+    (low, high), _ = surface.domain
+    assert [x.domain[0] for x in pieces] == list(pairwise([low, *lines, high]))
+    assert all(x.boundary == (OPEN, OPEN) for x in pieces)
     assert [x.name for x in pieces][:2] == ["sweep (piece 1)", "sweep (piece 2)"]
-    u = np.array([1.0])
+    u = np.array([float(lines[0])])
     before, after = (x.jets(u, 0.5 * u)[0] for x in pieces[:2])
     assert np.array_equal(before[0], after[0])
-    assert np.allclose(before[1], [0, 1, 0])
-    assert np.allclose(after[1], [-2, 0, 0])
-
-
-def test_multiple_knots_on_a_smooth_surface_are_no_crease():
-    surface = torus()
-    assert surface.pieces() == (surface,)
-    straight = extruded([(0, 0), (1, 0), (3, 0), (4, 0)])
-    assert straight.pieces() == (straight,)
-
-
-@pytest.mark.parametrize(("angle", "pieces"), [(0.09, 1), (0.11, 2)])
-def test_the_angle_of_a_crease(angle, pieces):
-    slope = math.tan(math.radians(angle))
-    assert len(extruded([(0, 0), (1, 0), (2, slope)]).pieces()) == pieces
-
-
-def test_control_points_that_coincide_make_an_edge_on_a_simple_knot():
-    corner = [(0.0, 0), (1, 0), (2, 0), (2, 0), (2, 0), (2, 1), (2, 2)]
-    knots = [0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4]
-    surface = extruded(corner, 3, knots)
-    assert nurbs_of(surface).creases == ((2.0,), ())
-    rounded = [(0, 0), (1, 0), (2, 0), (2, 0), (2.01, 0), (2, 1), (2, 2)]
-    assert nurbs_of(extruded(rounded, 3, knots)).creases == ((), ())
-    straight = [(0, 0), (1, 0), (2, 0), (2, 0), (2, 0), (3, 0), (4, 0)]
-    assert nurbs_of(extruded(straight, 3, knots)).creases == ((), ())
-    corner[3] = (math.nextafter(2.0, 3.0), 0)
-    assert nurbs_of(extruded(corner, 3, knots)).creases == ((2.0,), ())
-
-
-@pytest.mark.parametrize(("speed", "pieces"), [(2.9, 1), (3.1, 2)])
-def test_a_tangent_that_changes_its_length(speed, pieces):
-    """The surface is a plane, and a spline of it would fold from a factor of 5 on."""
-    assert len(extruded([(0, 0), (1, 0), (1 + speed, 0)]).pieces()) == pieces
-    closed = [(0, 0), (speed, 0), (speed, 1), (-1, 1), (-1, 0), (0, 0)]
-    assert (extruded(closed).boundary[0] == ("periodic", "periodic")) == (pieces == 1)
+    if name == "seam on a face":
+        assert np.allclose([before[1], after[1]], [[0, 1, 0], [-2, 0, 0]])
 
 
 def test_a_crease_on_a_part_of_a_line_is_found():
@@ -214,8 +196,8 @@ def test_a_crease_on_a_part_of_a_line_is_found():
     points = np.stack([x, y, 0 * x], axis=-1)
     points[2, 4, 2] = 0.5
     knots = [0, 0, 1, 2, 2], [0, 0, 1, 2, 3, 4, 4]
-    surface = gm.Surface.from_nurbs((1, 1), knots, points)
-    assert nurbs_of(surface).creases == ((1.0,), (3.0,))
+    surface: Any = gm.Surface.from_nurbs((1, 1), knots, points)
+    assert surface.function.creases == ((1.0,), (3.0,))
     assert len(surface.pieces()) == 4
 
 
@@ -227,7 +209,7 @@ def net(rows, columns):
     return np.stack([x, y, RNG.random((rows, columns))], axis=-1)
 
 
-def test_surfaces_of_geomdl():
+def of_geomdl():
     surface = geomdl.NURBS.Surface()
     surface.degree_u, surface.degree_v = 2, 3
     points, weights = net(4, 5), RNG.uniform(0.5, 2.0, (4, 5))
@@ -237,35 +219,34 @@ def test_surfaces_of_geomdl():
         4, 5,
     )  # fmt: skip
     surface.knotvector_u, surface.knotvector_v = [0, 0, 0, 0.3, 1, 1, 1], [0] * 4 + [0.6] + [1] * 4
-    ours = gm.Surface.from_nurbs(surface, name="theirs")
-    places = [(0.0, 0.0), (0.2, 0.7), (1.0, 0.5), (0.3, 0.6)]
-    expected = [surface.evaluate_single(x) for x in places]
-    assert np.allclose(ours.evaluate(*np.transpose(places)), expected, atol=1e-14)
-    assert ours.name == "theirs"
+    return surface
 
 
-@pytest.mark.parametrize("make", [surface_factory.torus, surface_factory.sphere])
-def test_surfaces_of_splipy(make):
-    """They are rational, and periodic ones do not repeat control points."""
-    surface = make()
-    ours = gm.Surface.from_nurbs(surface)
-    u, v = (np.linspace(surface.start(k), surface.end(k), 9) for k in (0, 1))
-    assert np.allclose(ours.evaluate(u[:, None], v), surface(u, v), atol=1e-14)
-    assert [x[0] == "periodic" for x in ours.boundary] == [surface.periodic(k) for k in (0, 1)]
-
-
-def test_smooth_periodic_surfaces_of_splipy():
+def smooth_of_splipy():
     """Cubics with two continuous derivatives at the seam: three control points are repeated."""
     basis = BSplineBasis(4, np.arange(-3.0, 12.0), periodic=2)
-    count = basis.num_functions()
-    angles = 2 * np.pi * np.arange(count) / count
+    angles = 2 * np.pi * np.arange(basis.num_functions()) / basis.num_functions()
     around = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=-1)
-    points = np.concatenate([around, around + np.array([0, 0, 1])])
-    surface = Surface(basis, BSplineBasis(2), points)
-    ours = gm.Surface.from_nurbs(surface)
-    u = np.linspace(surface.start(0), surface.end(0), 9)
-    assert np.allclose(ours.evaluate(u, 0.4), surface(u, [0.4])[:, 0], atol=1e-14)
-    assert ours.boundary[0] == ("periodic", "periodic")
+    return Surface(basis, BSplineBasis(2), np.concatenate([around, around + np.array([0, 0, 1])]))
+
+
+# Those of Splipy are rational, and periodic ones do not repeat control points.
+MAKERS = [of_geomdl, surface_factory.torus, surface_factory.sphere, smooth_of_splipy]
+
+
+@pytest.mark.parametrize("make", MAKERS)
+def test_surfaces_of_other_libraries(make):
+    theirs = make()
+    ours = gm.Surface.from_nurbs(theirs, name="theirs")
+    u, v = (np.linspace(*ends, 9) for ends in ours.domain)
+    if make is of_geomdl:
+        expected = [[theirs.evaluate_single((a, b)) for b in v.tolist()] for a in u.tolist()]
+        periodic = [False, False]
+    else:
+        expected, periodic = theirs(u, v), [theirs.periodic(k) for k in (0, 1)]
+    assert np.allclose(ours.evaluate(u[:, None], v), expected, atol=1e-14)
+    assert [x[0] == "periodic" for x in ours.boundary] == periodic
+    assert ours.name == "theirs"
 
 
 # --- errors ---------------------------------------------------------------------------------------
@@ -288,6 +269,10 @@ SQUARE = [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]
         (((0, 1), (LINE, LINE), SQUARE), "the degree of u must be a whole number of at least 1"),
         (((26, 1), (LINE, LINE), SQUARE), "the degree of u must be a whole number of at most 25"),
         (((2, 1), ([0] * 3 + [1] * 2, LINE), SQUARE), "needs at least 3 control points along u"),
+        (((1, 1), ([0, 0, 0.5, 0.5, 1, 1], LINE), net(4, 2)),
+         r"the knot 0.5 of u occurs 2 times.*would be torn"),
+        (((1, 1), ([0, 0, 0, 0.5, 1, 1], LINE), net(4, 2)),
+         "the knot 0.0 of u occurs 3 times.*would do nothing"),
         ((1, (LINE, LINE), SQUARE), "degrees must be a pair"),
         (((1, 1), LINE, SQUARE), "knots must be a pair"),
         (((1, 1), (LINE, LINE), [[0, 0, 0], [1, 0, 0]]), r"must have the shape \(m, n, 3\)"),
@@ -303,18 +288,6 @@ def test_errors(arguments, message):
     refused(message, gm.Surface.from_nurbs, *arguments)
 
 
-@pytest.mark.parametrize(
-    ("knots", "message"),
-    [
-        ([0, 0, 0.5, 0.5, 1, 1], r"the knot 0.5 of u occurs 2 times.*would be torn"),
-        ([0, 0, 0, 0.5, 1, 1], "the knot 0.0 of u occurs 3 times.*would do nothing"),
-    ],
-)
-def test_knots_that_occur_too_often(knots, message):
-    points = net(4, 2)
-    refused(message, gm.Surface.from_nurbs, (1, 1), (knots, LINE), points)
-
-
 def test_trimmed_surfaces_of_geomdl_are_refused():
     surface = geomdl.BSpline.Surface()
     surface.degree_u = surface.degree_v = 1
@@ -324,7 +297,3 @@ def test_trimmed_surfaces_of_geomdl_are_refused():
     trim.degree, trim.ctrlpts, trim.knotvector = 1, [[0.1, 0.1], [0.9, 0.9]], LINE
     surface.trims = [trim]
     refused("has trim curves", gm.Surface.from_nurbs, surface)
-
-
-def test_the_object_is_what_evaluates():
-    assert isinstance(torus().function, Nurbs)

@@ -1,20 +1,20 @@
 """Poles: the spline has one normal there, and every normal of a closed surface once."""
 
-from fractions import Fraction
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.spline.poles import ring_around
 from numpy.typing import ArrayLike, NDArray
 
 from ...products import covering
-from ...shapes import egg, on_sphere
+from ...shapes import egg, on_sphere, random_rotation
+from ..search.forms import fractions
 
 Array = NDArray[np.float64]
 SPHERE = (0.0, 2 * np.pi), (-np.pi / 2, np.pi / 2)
-# A rotation without zeros: no plane of symmetry of a surface is one of the coordinates.
-ROTATION = np.linalg.qr(np.array([[0.7, 0.3, -0.5], [0.2, 0.8, 0.6], [-0.4, 0.5, 0.9]]))[0]
-ROTATION *= np.linalg.det(ROTATION)
+ROTATION = random_rotation(1)  # no plane of symmetry of a surface is one of the coordinates
 
 
 def ellipsoid(u: ArrayLike, v: ArrayLike) -> Array:
@@ -39,30 +39,20 @@ def moved(shape: str, rotation: Array, shift: float = 0.0, factor: float = 1.0) 
     return gm.Surface.from_callable(evaluate, SPHERE, (True, "pole"), name=shape)
 
 
-def pole_offsets(spline: gm.Spline, end: int) -> list[list[Fraction]]:
-    """Return, exactly, how the first ring of coefficients differs from the ghosts at an end of v.
+def pole_and_offsets(spline: gm.Spline, end: int) -> tuple[Array, Array]:
+    """Return, exactly and times two, poles (m, 3) at an end of v, and offsets from these.
 
-    They are twice the differences from the pole.
+    They are the sums and the differences of the first ring of coefficients and the ghosts.
     """
-    inner, outer = ((1, 0), (-2, -1))[end]
-    pairs = zip(
-        spline.coefficients[1:-1, inner].tolist(), spline.coefficients[1:-1, outer].tolist(),
-        strict=True,
-    )  # fmt: skip
-    return [[Fraction(x) - Fraction(y) for x, y in zip(*pair, strict=True)] for pair in pairs]
-
-
-def cross(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
-    return [a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3)]
+    ring, ghosts = fractions(spline.coefficients[1:-1, (-2, -1) if end else (1, 0)]).swapaxes(0, 1)
+    return ring + ghosts, ring - ghosts
 
 
 def pole_normal(spline: gm.Spline, end: int) -> Array:
     """Return the normal at a pole, of about unit length; it is exact up to rounding."""
-    offsets = pole_offsets(spline, end)
-    a, b = ([x + y for x, y in zip(offsets[k], offsets[k + 1], strict=True)] for k in (0, 1))
-    normal = cross(a, b)
-    largest = max(map(abs, normal))
-    return np.array([float(x / largest) for x in normal])
+    _, offsets = pole_and_offsets(spline, end)
+    normal = np.cross(offsets[0] + offsets[1], offsets[1] + offsets[2])
+    return (normal / np.abs(normal).max()).astype(np.float64)
 
 
 def beside(normal: Array, turns: int) -> Array:
@@ -86,12 +76,23 @@ def hard_normals(spline: gm.Spline, generic: int, frequency: int, turns: int) ->
 def test_the_ring_at_a_pole_is_in_one_plane(shape: str, shift: float, cells: tuple[int, int]):
     spline = gm.fit(moved(shape, ROTATION, shift), cells)
     for end in (0, 1):
-        offsets = pole_offsets(spline, end)
-        normal = cross(offsets[0], offsets[1])
-        assert any(normal)
-        assert not any(
-            sum(x * y for x, y in zip(normal, offset, strict=True)) for offset in offsets
-        )
+        poles, offsets = pole_and_offsets(spline, end)
+        assert (poles == poles[0]).all()
+        normal = np.cross(offsets[0], offsets[1])
+        assert normal.any()
+        assert not (offsets @ normal).any()
+
+
+@pytest.mark.parametrize(("count", "error"), [(8, 1.6e-9), (64, 1.6e-9), (512, 4e-9)])
+def test_a_ring_hardly_moves(count: int, error: float):
+    """Its radius is 0.1: the mean of the largest errors of twenty planes."""
+    rng, angles = np.random.default_rng(0), 2.0 * np.pi * np.arange(count) / count
+    errors = []
+    for _ in range(20):
+        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0][:2]
+        ring = 0.1 * np.stack([np.cos(angles), np.sin(angles)], axis=1) @ axes + (1.0, 0.3, 0.2)
+        errors.append(np.abs(ring_around(ring)[0] - ring).max())
+    assert np.mean(errors) < error
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -138,11 +139,15 @@ def test_every_one_of_many_normals_counts_once(shape: str):
 
 @pytest.mark.parametrize("count", [24, 25])
 @pytest.mark.parametrize("axis", [0, 1])
-def test_poles_of_points(count: int, axis: int):
-    u, v = np.arange(count) * (2 * np.pi / count), np.linspace(*SPHERE[1], 14)
+@pytest.mark.parametrize("ends", [(True, "pole"), (False, False)])
+def test_poles_of_points(count: int, axis: int, ends: Any):
+    """Also where a grid repeats its first points, and nobody says that it is closed."""
+    repeats = ends == (False, False)
+    u, v = np.arange(count + repeats) * (2 * np.pi / count), np.linspace(*SPHERE[1], 14)
     points = egg(u[:, None], v) @ ROTATION.T
-    ends = (True, "pole")
     if axis == 0:
         points, ends = -points.swapaxes(0, 1), ends[::-1]
     spline = gm.fit(gm.Surface.from_grid(points, periodic=ends))
+    found = (("periodic", "periodic"), ("pole", "pole"))
+    assert spline.boundary == (found if axis == 1 else found[::-1])
     assert (gm.GaussMap(spline).degree(gm.fibonacci(500)) == 1).all()

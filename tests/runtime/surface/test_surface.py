@@ -39,23 +39,6 @@ def test_domains(domain):
     assert gm.Surface.from_callable(saddle, domain).domain == ((0.0, 1.0), (0.0, 2.0))
 
 
-EMPTY = "domain of {} is empty or infinite"
-NO_DOMAIN = [
-    (((0, 0), (0, 1)), EMPTY.format("u")), (((0, 1), (1, 0)), EMPTY.format("v")),
-    (((-np.inf, 0), (0, 1)), EMPTY.format("u")), (((0, 1), (0, np.nan)), EMPTY.format("v")),
-    (((-1e308, 1e308), (0, 1)), EMPTY.format("u")),  # so is its length
-    *((x, "domain must be") for x in (
-        ((0, 10**400), (0, 1)), ((0, 1),), ((0, 1, 2), (0, 1)), (0, 1), "abcd", None,
-        (("a", 1), (0, 1)), ((0j, 1), (0, 1)),
-    )),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("domain", "complaint"), NO_DOMAIN)
-def test_domains_that_are_none(domain, complaint):
-    refused(complaint, gm.Surface.from_callable, saddle, domain)
-
-
 @pytest.mark.parametrize(
     ("periodic", "ends"),
     [
@@ -75,33 +58,40 @@ def test_ends(periodic, ends):
     assert gm.Surface.from_callable(tube, TURN, periodic).boundary == ends
 
 
-@pytest.mark.parametrize(
-    ("periodic", "complaint"),
-    [
-        (None, "must be a pair"),
-        ("periodic", "must be a pair"),
-        ((True,), "must be a pair"),
-        ((1, 0), "periodic for u must be True, False"),
-        ((None, False), "periodic for u must be True, False"),
-        ((False, "poles"), "periodic for v must be True, False"),
-        ((("periodic",), False), "periodic for u must be True, False"),
-        ((("periodic", "open"), False), "both ends of u"),
-        ((True, ("periodic", "pole")), "both ends of v"),
-        ((("periodic", "mirrored"), False), "both ends of u"),
-        (("pole", "pole"), 'a "pole" of u needs v to be periodic'),
-        (("pole", False), 'a "pole" of u needs v to be periodic'),
-        ((False, "pole"), "needs u to be periodic"),
-        (("mirrored", ("pole", "open")), "needs u to be periodic"),
-    ],
-)
-def test_ends_that_do_not_match(periodic, complaint):
-    refused(complaint, gm.Surface.from_callable, tube, TURN, periodic)
+# What is given instead of a torus with open ends.
+NO_CALLABLES = [
+    *(({"domain": x}, f"domain of {name} is empty or infinite") for x, name in (
+        (((0, 0), (0, 1)), "u"), (((0, 1), (1, 0)), "v"), (((-np.inf, 0), (0, 1)), "u"),
+        (((0, 1), (0, np.nan)), "v"), (((-1e308, 1e308), (0, 1)), "u"),  # so is its length
+    )),
+    *(({"domain": x}, "domain must be") for x in (
+        ((0, 10**400), (0, 1)), ((0, 1),), ((0, 1, 2), (0, 1)), (0, 1), "abcd", None,
+        (("a", 1), (0, 1)), ((0j, 1), (0, 1)),
+    )),
+    *(({"periodic": x}, "must be a pair") for x in (None, "periodic", (True,))),
+    *(({"periodic": x}, f"periodic for {name} must be True, False") for x, name in (
+        ((1, 0), "u"), ((None, False), "u"), ((False, "poles"), "v"), ((("periodic",), False), "u"),
+    )),
+    *(({"periodic": x}, f"both ends of {name}") for x, name in (
+        ((("periodic", "open"), False), "u"), ((True, ("periodic", "pole")), "v"),
+        ((("periodic", "mirrored"), False), "u"),
+    )),
+    *(({"periodic": x}, 'a "pole" of u needs v to be periodic') for x in (
+        ("pole", "pole"), ("pole", False),
+    )),
+    *(({"periodic": x}, "needs u to be periodic") for x in (
+        (False, "pole"), ("mirrored", ("pole", "open")),
+    )),
+    *(({"f": x}, "the function of a surface must be callable") for x in (
+        None, 5, "saddle", np.zeros((5, 5, 3)),
+    )),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("f", [None, 5, "saddle", np.zeros((5, 5, 3))], ids=lambda f: str(type(f)))
-def test_what_is_not_callable(f):
-    complaint = "the function of a surface must be callable"
-    refused(complaint, gm.Surface.from_callable, f, SQUARE)
+@pytest.mark.parametrize(("changes", "complaint"), NO_CALLABLES)
+def test_arguments_of_from_callable_that_are_refused(changes, complaint):
+    arguments = {"f": tube, "domain": TURN} | changes
+    refused(complaint, gm.Surface.from_callable, **arguments)
 
 
 # --- callables ------------------------------------------------------------------------------------
@@ -167,10 +157,17 @@ def test_the_callable_gets_arrays_of_its_own():
         (lambda u, v: saddle(u, np.where(v < 0.5, v, np.inf)), "not finite at u = 0.125, v = 0.5:"),
         (lambda u, v: saddle(u, v) / 0.0, "not finite at u = 0.125, v = 0.1:"),
         (lambda u, v: 1e305 * saddle(u, v), "too large"),
+        ("sqrt(u - 2)", "not finite at u = "),
+        ("log(u - 1)", "not finite at u = "),
+        (sp.I * sp.Symbol("u"), "not of type complex128"),
+        ("1/(u - 5/8)", "not finite at u = 0.625"),
     ],
 )
-def test_callables_that_return_no_surface(returned, complaint):
-    surface = gm.Surface.from_callable(returned, SQUARE, name="mine")
+def test_functions_and_expressions_that_are_no_surface(returned, complaint):
+    if isinstance(returned, str | sp.Expr):
+        surface = gm.Surface.from_sympy(("u", "v", returned), "uv", SQUARE, name="mine")
+    else:
+        surface = gm.Surface.from_callable(returned, SQUARE, name="mine")
     refused(complaint, gm.fit, surface, (4, 5), error=gm.errors.SurfaceError)
     refused("mine", gm.sample, surface, count=10, cells=(4, 5), error=gm.errors.SurfaceError)
 
@@ -249,20 +246,17 @@ def test_ends_close_up_to_rounding(factor, shift):
         gm.fit(surface, (8, 9))
 
 
-def test_ends_close_up_to_rounding_far_from_the_origin():
+def test_ends_close_up_to_the_last_bit_of_points():
     shift = 1e14  # whose last bit is 1/64
 
     def unlucky(u, v):
         return tube(u, v) + np.where(u == 2 * np.pi, shift + 1 / 64, shift)[..., None]
 
+    def single(u, v):
+        return tube(u.astype(np.float32), v.astype(np.float32))
+
     gm.fit(gm.Surface.from_callable(unlucky, TURN, (True, True)), (8, 9))
-
-
-def test_single_precision_is_precise_enough_to_close():
-    surface = gm.Surface.from_callable(
-        lambda u, v: tube(u.astype(np.float32), v.astype(np.float32)), TURN, (True, True)
-    )
-    points = gm.fit(surface, (64, 64)).evaluate(1.0, 2.0)
+    points = gm.fit(gm.Surface.from_callable(single, TURN, (True, True)), (64, 64)).evaluate(1, 2)
     np.testing.assert_allclose(points, tube(1.0, 2.0), rtol=0, atol=2e-5)
 
 
@@ -299,65 +293,43 @@ def test_constants_and_functions_of_one_parameter():
     np.testing.assert_allclose(points, [[1, np.pi, 1], [1, np.pi, 0.5]], rtol=1e-16)
 
 
-@pytest.mark.parametrize(
-    ("position", "complaint"),
-    [
-        *((x, "position must be three SymPy expressions") for x in (("u", "v"), (*"uvuv",), 5)),
-        (("u", "a*v", "b"), "neither parameter nor number: a, b"),
-        (("u", "v", "gamma"), "neither parameter nor number: gamma"),
-        (("u", "v", "x" * 10_000), "neither parameter nor number: x+…"),
-        (("u", "v", "u +"), "'u [+]' is not a SymPy expression"),
-        *((("u", "v", x), "is not a SymPy expression") for x in (
-            "u(", "u.x", "", "lambda", "u < 1", sp.Matrix([u]), [u], None, saddle,
-        )),
-        (("u", "v", "1/0"), "not real or not finite"),
-        (("u", "v", sp.nan), "it is not finite"),
-        (("u", "v", sp.elliptic_k(u)), "uses elliptic_k, which kernels cannot compute"),
-        (("u", "v", sp.Function("f")(u)), "uses f, which kernels cannot compute"),
-    ],
-)  # fmt: skip
-def test_expressions_that_are_none(position, complaint):
-    refused(complaint, gm.Surface.from_sympy, position, ("u", "v"), SQUARE)
-
-
-@pytest.mark.parametrize(
-    "parameters",
-    [("u",), ("u", "u"), ("u", "v", "w"), (1, 2), None, ("u v", "v"), ("", "v"), (u + v, v),
-     (u, sp.Symbol("u", real=True))],
-)  # fmt: skip
-def test_parameters_of_expressions_that_are_none(parameters):
-    complaint = "parameters must be two SymPy symbols"
-    refused(complaint, gm.Surface.from_sympy, ("u", "v", "u"), parameters, SQUARE)
-
-
 HOLDS_ITSELF: list[object] = []
 HOLDS_ITSELF.append(HOLDS_ITSELF)
-
-
-@pytest.mark.parametrize(
-    ("domain", "complaint"),
-    [
-        *(((pair, (0, 1)), "domain must be") for pair in (
-            (0, "x"), (0, "I"), (0, "zoo"), (0, "1 +"), (0, "a.b"), (0, None), (0, "oo"),
-            (0, sp.oo), (0, "acsch(2 < 3)"), (0, "atan2(E, 10**50) + (3 < 3)"),
+# What is given instead of a saddle over the unit square.
+NO_EXPRESSIONS = [
+    *(({"position": x}, "position must be three SymPy expressions") for x in (
+        ("u", "v"), (*"uvuv",), 5,
+    )),
+    *(({"position": ("u", *x)}, f"neither parameter nor number: {names}") for x, names in (
+        (("a*v", "b"), "a, b"), (("v", "gamma"), "gamma"), (("v", "x" * 10_000), "x+…"),
+    )),
+    *(({"position": ("u", "v", x)}, complaint) for x, complaint in (
+        ("u +", "'u [+]' is not a SymPy expression"),
+        *((x, "is not a SymPy expression") for x in (
+            "u(", "u.x", "", "lambda", "u < 1", sp.Matrix([u]), [u], None, saddle,
         )),
-        (((0, "10**400"), (0, 1)), "empty or infinite|domain must be"),
-        (((0, "pi"), ("pi", "pi")), "domain of v is empty or infinite"),
-        (HOLDS_ITSELF, "domain must be"),
-    ],
-)  # fmt: skip
-def test_domains_of_expressions_that_are_none(domain, complaint):
-    refused(complaint, gm.Surface.from_sympy, ("u", "v", "u*v"), "uv", domain)
+        ("1/0", "not real or not finite"), (sp.nan, "it is not finite"),
+        (sp.elliptic_k(u), "uses elliptic_k, which kernels cannot compute"),
+        (sp.Function("f")(u), "uses f, which kernels cannot compute"),
+    )),
+    *(({"parameters": x}, "parameters must be two SymPy symbols") for x in (
+        ("u",), ("u", "u"), ("u", "v", "w"), (1, 2), None, ("u v", "v"), ("", "v"), (u + v, v),
+        (u, sp.Symbol("u", real=True)),
+    )),
+    *(({"domain": ((0, x), (0, 1))}, "domain must be") for x in (
+        "x", "I", "zoo", "1 +", "a.b", None, "oo", sp.oo, "acsch(2 < 3)",
+        "atan2(E, 10**50) + (3 < 3)",
+    )),
+    ({"domain": ((0, "10**400"), (0, 1))}, "empty or infinite|domain must be"),
+    ({"domain": ((0, "pi"), ("pi", "pi"))}, "domain of v is empty or infinite"),
+    ({"domain": HOLDS_ITSELF}, "domain must be"),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("height", "complaint"),
-    [("sqrt(u - 2)", "not finite at u = "), ("log(u - 1)", "not finite at u = "),
-     (sp.I * u, "not of type complex128"), ("1/(u - 1/2)", "not finite at u = 0.5")],
-)  # fmt: skip
-def test_expressions_that_cannot_be_evaluated(height, complaint):
-    surface = gm.Surface.from_sympy(("u", "v", height), "uv", SQUARE)
-    refused(complaint, gm.fit, surface, (4, 4), error=gm.errors.SurfaceError)
+@pytest.mark.parametrize(("changes", "complaint"), NO_EXPRESSIONS)
+def test_arguments_of_from_sympy_that_are_refused(changes, complaint):
+    arguments = {"position": ("u", "v", "u*v"), "parameters": "uv", "domain": SQUARE} | changes
+    refused(complaint, gm.Surface.from_sympy, **arguments)
 
 
 def test_all_functions_of_texts_are_evaluated_as_in_sympy():

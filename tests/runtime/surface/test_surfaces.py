@@ -15,6 +15,7 @@ from gaussmap.symbolic.surfaces import CATALOGUE
 
 from ...products import covering
 from ...refusals import refused
+from ..exact import Exact
 
 NAMES = list(CATALOGUE)
 
@@ -31,17 +32,11 @@ def test_names():
 
 @covering(name=NAMES, with_defaults=[True, False])
 def test_positions_are_those_of_the_derivation(name, with_defaults):
-    exact = CATALOGUE[name]
     chosen = {} if with_defaults else changed(name)
-    values = {
-        p.symbol: sp.Float(chosen.get(p.symbol.name, float(p.default)), 30)
-        for p in exact.parameters
-    }
-    position = sp.lambdify((exact.u, exact.v), [x.xreplace(values) for x in exact.position])
     surface = gm.surfaces.surface(name, **chosen)
-    u, v = (np.linspace(*interval, 9) for interval in surface.domain)
-    points = surface.evaluate(u[:, None], v)
-    expected = np.array([[[float(x) for x in position(a, b)] for b in v] for a in u])
+    u, v = (x.ravel() for x in np.meshgrid(*(np.linspace(*x, 9) for x in surface.domain)))
+    expected = Exact(name, chosen).points(np.stack([u, v], axis=1))
+    points = surface.evaluate(u, v)
     np.testing.assert_allclose(points, expected, rtol=0, atol=1e-14 * np.abs(expected).max())
 
 
