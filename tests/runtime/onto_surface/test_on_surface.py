@@ -7,26 +7,19 @@ import numpy as np
 import pytest
 from gaussmap.runtime.onto_surface import on_surface
 from gaussmap.runtime.onto_surface.on_surface import geometry_of
+from gaussmap.runtime.samples.fields import ARRAY_NAMES, ARRAY_NAMES_ON_SURFACE
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import egg, egg_surface, normals_at, same
+from ...shapes import egg, egg_surface, normals_at, same, same_chunks, unit
+from ..exact import Exact
 
 CELLS = (12, 12)
 NORMAL_ERROR = 1e-12  # radians
-FIELDS_ON_SPLINE = (
-    "points", "normals", "uv", "support", "gaussian_curvature", "mean_curvature", "normal_index",
-    "patch_index",
-)  # fmt: skip
-FIELDS_ON_SURFACE = (*FIELDS_ON_SPLINE, "on_surface")
 
 
 def sines(normals: np.ndarray, others: np.ndarray) -> np.ndarray:
     return np.linalg.norm(np.cross(normals, others), axis=1)
-
-
-def curvature_of_torus(v: np.ndarray) -> np.ndarray:
-    return np.cos(v) / (0.35 * (1.0 + 0.35 * np.cos(v)))
 
 
 REQUESTS: list[dict[str, Any]] = [
@@ -53,9 +46,8 @@ def test_samples_are_on_the_surface(request_):
     np.testing.assert_allclose(samples.points[there], torus.evaluate(u, v), atol=1e-15)
     normals = samples.normals[there]
     assert sines(normals, normals_at(torus, samples.uv[there])).max() < NORMAL_ERROR + 1e-15
-    np.testing.assert_allclose(
-        samples.gaussian_curvature[there], curvature_of_torus(v), rtol=1e-7, atol=1e-7
-    )
+    K = Exact("torus").curvatures(samples.uv[there])[:, 0]
+    np.testing.assert_allclose(samples.gaussian_curvature[there], K, rtol=1e-7, atol=1e-7)
     np.testing.assert_allclose(
         samples.support[there], np.sum(samples.points[there] * normals, axis=1), atol=1e-15
     )
@@ -70,7 +62,7 @@ def test_samples_of_the_spline_are_those_of_the_spline_itself():
     assert samples.report == others.report
     assert samples.report.on == "spline"
     assert samples.report.unrefined is samples.on_surface is samples.surface is None
-    assert samples.fields == FIELDS_ON_SPLINE
+    assert samples.fields == ARRAY_NAMES
     for name, array in samples.arrays().items():
         np.testing.assert_array_equal(array, getattr(others, name))
 
@@ -83,7 +75,7 @@ def test_chosen_fields_are_those_of_all(fields, dtype):
     for request_ in MIXED:
         every = gm.sample("torus", **request_, cells=CELLS, on="surface")
         some = gm.sample("torus", **request_, cells=CELLS, fields=fields, dtype=dtype, on="surface")
-        expected = FIELDS_ON_SURFACE
+        expected = ARRAY_NAMES_ON_SURFACE
         if every.report.proved is not None:
             expected = (*expected, "uv_radius", "component")
             expected = tuple(x for x in expected if x != "patch_index")
@@ -130,34 +122,23 @@ def test_a_coverage_below_the_misfit_is_reached_as_far_as_possible():
     assert 0.05 < report.coverage <= 1.1 * 0.025 + 2.0 * report.fit_distance
 
 
-class TestPoles:
-    def test_every_normal_once(self):
-        surface, normals = egg_surface(), gm.directions.fibonacci(3000)
-        samples = gm.sample(surface, normals=normals, cells=(32, 16), on="surface")
-        np.testing.assert_array_equal(np.sort(samples.normal_index), np.arange(3000))
-        assert samples.report.unrefined == 0
-        assert (samples.gaussian_curvature > 0.0).all()
-        assert sines(samples.normals, normals_at(surface, samples.uv)).max() < 1e-11
-        again = gm.sample(surface, normals=normals, cells=(32, 16), on="spline")
-        assert len(again) > 3000
-
-    def test_densities_take_the_curvature_of_the_surface(self):
-        """The share of ∫ K² in the outermost cells; from the spline it is more than ten times."""
-        surface = egg_surface()
-        samples = gm.sample(surface, 3000, density=2, cells=(32, 32), on="surface")
-        v = np.pi * ((np.arange(640) + 0.5) / 640 - 0.5)
-        u = 2 * np.pi * (np.arange(64) + 0.5) / 64
-        jets = surface.derivatives(u[:, None], v)
-        x_u, x_v = jets[..., 1, :], jets[..., 2, :]
-        N = np.cross(x_u, x_v)
-        L, M, P = (np.sum(jets[..., k, :] * N, axis=-1) for k in (3, 4, 5))
-        square = np.sum(N * N, axis=-1)
-        K = (L * P - M * M) / square**2
-        weight = K**2 * np.sqrt(square)
-        outermost = np.abs(v) > np.pi / 2 * (1 - 2 / 32)
-        share = weight[:, outermost].sum() / weight.sum()
-        found = (np.abs(samples.uv[:, 1]) > np.pi / 2 * (1 - 2 / 32)).mean()
-        assert share / 1.5 < found < share * 1.5
+def test_densities_take_the_curvature_of_the_surface():
+    """The share of ∫ K² in the outermost cells; from the spline it is more than ten times."""
+    surface = egg_surface()
+    samples = gm.sample(surface, 3000, density=2, cells=(32, 32), on="surface")
+    v = np.pi * ((np.arange(640) + 0.5) / 640 - 0.5)
+    u = 2 * np.pi * (np.arange(64) + 0.5) / 64
+    jets = surface.derivatives(u[:, None], v)
+    x_u, x_v = jets[..., 1, :], jets[..., 2, :]
+    N = np.cross(x_u, x_v)
+    L, M, P = (np.sum(jets[..., k, :] * N, axis=-1) for k in (3, 4, 5))
+    square = np.sum(N * N, axis=-1)
+    K = (L * P - M * M) / square**2
+    weight = K**2 * np.sqrt(square)
+    outermost = np.abs(v) > np.pi / 2 * (1 - 2 / 32)
+    share = weight[:, outermost].sum() / weight.sum()
+    found = (np.abs(samples.uv[:, 1]) > np.pi / 2 * (1 - 2 / 32)).mean()
+    assert share / 1.5 < found < share * 1.5
 
 
 class TestArguments:
@@ -207,11 +188,7 @@ def test_chunks_make_the_whole(name: str, monkeypatch: pytest.MonkeyPatch) -> No
         known: dict[str, Any] = {"cells": (8, 6), **asked}
         whole = gm.sample(surface, density="gauss", threads=1, **known)
         for size in (7, 100, 10**9):
-            chunks = list(gm.sample_stream(surface, chunk=size, **known))
-            assert [len(x) for x in chunks[:-1]] == [size] * (len(chunks) - 1)
-            joined = gm.Samples.concatenate(chunks)
-            same(joined, whole)
-            assert joined.report.unrefined == whole.report.unrefined
+            same_chunks(gm.sample_stream(surface, chunk=size, **known), whole, size)
 
 
 @pytest.mark.parametrize("name", ["torus", "ellipsoid", "wavy_graph"])
@@ -258,9 +235,9 @@ def test_normals_without_a_sample_are_listed(exponent):
     # symmetry there, nor do they come near.
     away = np.abs(normals[samples.normal_index]).min(axis=1) > 0.1
     on_axis = np.abs(samples.points / [1.0, 1.3, 0.8]) ** (2.0 / exponent - 1.0) / [1.0, 1.3, 0.8]
-    on_axis *= np.sign(samples.points)
-    on_axis /= np.linalg.norm(on_axis, axis=1, keepdims=True)
-    off = np.abs(on_axis - normals[samples.normal_index]).max(axis=1)
+    off = np.abs(unit(on_axis * np.sign(samples.points)) - normals[samples.normal_index]).max(
+        axis=1
+    )
     assert off[away].max() < 1e-6
     assert samples.report.proved is None
 
@@ -277,7 +254,5 @@ def test_a_count_is_that_of_samples_on_the_surface(count):
     assert samples.report.undecided is None
     turned = np.cross(samples.normals, normals_at(spindle, samples.uv))
     assert np.linalg.norm(turned, axis=1).max() < 1e-9
-    streamed = gm.Samples.concatenate(list(gm.sample_stream(spindle, count, chunk=100)))
-    same(streamed, samples)
-    assert streamed.report.on == "surface"
-    assert streamed.report.unrefined == samples.report.unrefined
+    assert samples.report.on == "surface"
+    same_chunks(gm.sample_stream(spindle, count, chunk=100), samples, 100)

@@ -50,10 +50,6 @@ def arcs(small, large, height):
     return gm.Surface.from_nurbs((1, 2), knots, points, weights, name="arcs")
 
 
-def report_of(samples) -> Any:
-    return samples.report
-
-
 def piece_of(samples, line):
     return (samples.uv[:, 1] > line).astype(int)
 
@@ -71,38 +67,26 @@ def share(surface, count, density):
 @pytest.mark.parametrize(("on", "tolerance"), [("spline", 2e-2), ("surface", 1e-11)])
 def test_every_point_with_a_normal_once(on, tolerance):
     """The normals of the edge belong to no piece: they are those of its points."""
-    directions = gm.directions.fibonacci(300)
-    latitude = np.arcsin(directions[:, 2])
-    inside = (np.abs(latitude) > LOW) & (np.abs(latitude) < HIGH)
-    clear = np.abs(np.abs(latitude) - LOW) > 0.01
-    clear &= np.abs(np.abs(latitude) - HIGH) > 0.01
-    samples = gm.sample(barrel(), normals=directions[clear], density="gauss", cells=CELLS, on=on)
+    normals = np.concatenate([gm.fibonacci(300), gm.icosphere(8), np.eye(3), -np.eye(3)])
+    latitude = np.abs(np.arcsin(normals[:, 2] / np.linalg.norm(normals, axis=1)))
+    if on == "spline":
+        clear = (np.abs(latitude - LOW) > 0.01) & (np.abs(latitude - HIGH) > 0.01)
+        normals, latitude = normals[clear], latitude[clear]
+    samples = gm.sample(barrel(), normals=normals, cells=CELLS, on=on)
     if on == "surface":
-        within = np.abs(latitude[clear]) < HIGH
-        assert np.array_equal(samples.normal_index, np.flatnonzero(within))
+        counts = np.bincount(samples.normal_index, minlength=len(normals))
+        assert np.array_equal(counts, latitude < HIGH)
+        on_edge = samples.normal_index[samples.component == gm.Component.CREASE]
+        assert np.array_equal(on_edge, np.flatnonzero(latitude <= LOW))
+        assert (samples.report.proved, samples.report.undecided) == (len(normals), ())
+        assert (samples.uv_radius < 1e-8).all()
+        assert np.array_equal(gm.GaussMap(barrel()).count(normals), counts)
     samples = samples[samples.component == gm.Component.REGULAR]
-    assert np.array_equal(np.sort(samples.normal_index), np.flatnonzero(inside[clear]))
+    inside = np.flatnonzero((latitude > LOW) & (latitude < HIGH))
+    assert np.array_equal(np.sort(samples.normal_index), inside)
     assert np.array_equal(piece_of(samples, 1.0) == 1, samples.normals[:, 2] > 0)
-    sides = np.sign(samples.normals[:, 2:])
-    centres = np.array([0, 0, -math.sin(LOW)]) * sides
+    centres = np.array([0, 0, -math.sin(LOW)]) * np.sign(samples.normals[:, 2:])
     assert np.allclose(samples.points - centres, samples.normals, atol=tolerance)
-
-
-def test_points_of_all_pieces_are_proved():
-    """Special normals belong to points of knots; those of the edge to its points."""
-    normals = np.concatenate([gm.icosphere(8), np.eye(3), -np.eye(3)])
-    samples = gm.sample(barrel(), normals=normals)
-    directions = normals / np.linalg.norm(normals, axis=1, keepdims=True)
-    latitude = np.abs(np.arcsin(directions[:, 2]))
-    counts = np.bincount(samples.normal_index, minlength=len(normals))
-    assert np.array_equal(counts, latitude < HIGH)
-    on_edge = samples.normal_index[samples.component == gm.Component.CREASE]
-    assert np.array_equal(on_edge, np.flatnonzero(latitude <= LOW))
-    assert (report_of(samples).proved, report_of(samples).undecided) == (len(normals), ())
-    assert (samples.uv_radius < 1e-8).all()
-    known = gm.GaussMap(barrel())
-    assert np.array_equal(known.count(normals), counts)
-    assert known.points(normals[:50]).report.proved == 50
 
 
 def test_patches_are_numbered_through_all_pieces():
@@ -154,8 +138,8 @@ def test_an_angle_holds_on_all_pieces():
     samples = gm.sample(barrel(), angle=6.0, cells=CELLS)
     lower, upper = np.bincount(piece_of(samples, 1.0))
     assert lower == pytest.approx(upper, rel=0.05)
-    assert report_of(samples).angle <= 6.0
-    assert samples.normal_index.max() < report_of(samples).normals  # of one icosphere
+    assert samples.report.angle <= 6.0
+    assert samples.normal_index.max() < samples.report.normals  # of one icosphere
 
 
 def test_coverage_holds_on_all_pieces():
@@ -166,7 +150,7 @@ def test_coverage_holds_on_all_pieces():
         np.insert(x * [0.5, 1], 0, 0.0, axis=1)[:, [0, 2, 1]],
     ):
         distances = np.linalg.norm(points[:, None] - samples.points, axis=2).min(axis=1)
-        assert distances.max() <= report_of(samples).coverage <= 0.5
+        assert distances.max() <= samples.report.coverage <= 0.5
 
 
 def test_samples_of_pieces_have_no_mesh():
@@ -180,7 +164,7 @@ def test_a_count_that_covers_all_pieces():
     least = len(gm.sample(roof(), coverage=0.5, density="uniform", cells=CELLS))
     samples = gm.sample(roof(), least + 40, coverage=0.5, cells=CELLS)
     assert len(samples) == least + 40
-    assert report_of(samples).coverage <= 0.5
+    assert samples.report.coverage <= 0.5
     with pytest.warns(gm.GaussmapWarning, match="the coverage is"):
         few = gm.sample(roof(), least // 2, coverage=0.5, cells=CELLS)
     assert len(few) == least // 2
@@ -190,8 +174,10 @@ def test_the_report_sums_up():
     samples = gm.sample(
         barrel(), coverage=0.2, cells=CELLS, fields=("points", "gaussian_curvature")
     )
-    report = report_of(samples)
-    alone = [report_of(gm.sample(x, coverage=0.2, cells=(24, 12))) for x in barrel().pieces()]
+    report = samples.report
+    alone: list[Any] = [
+        gm.sample(x, coverage=0.2, cells=(24, 12)).report for x in barrel().pieces()
+    ]
     assert report.patches == sum(x.patches for x in alone)
     assert report.fit_distance == max(x.fit_distance for x in alone)
     assert report.fit_rms == pytest.approx(math.sqrt(sum(x.fit_rms**2 for x in alone) / 2))
@@ -230,6 +216,6 @@ def test_poles_and_apexes_of_pieces():
     buoy = revolved(profile, [1, math.cos(half), 1, 1, 1])
     samples = gm.sample(buoy, 200, cells=CELLS)
     assert len(samples) == 200
-    assert report_of(samples).apexes == 1
+    assert samples.report.apexes == 1
     areas = 2 * math.pi, math.pi * math.sqrt(2.0)
     assert share(buoy, 400, "uniform") == pytest.approx(areas[1] / sum(areas), rel=0.02)

@@ -6,6 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ...products import covering
+from ...shapes import unit
 
 Array = NDArray[np.float64]
 
@@ -38,8 +39,7 @@ def lemon(name: str, along_u: bool, turn: tuple[str, str] | None = None) -> gm.S
 
 def directions() -> Array:
     rng = np.random.default_rng(1)
-    n = np.concatenate([np.eye(3), -np.eye(3), gm.icosphere(4), rng.normal(size=(150, 3))])
-    return n / np.linalg.norm(n, axis=1, keepdims=True)
+    return unit(np.concatenate([np.eye(3), -np.eye(3), gm.icosphere(4), rng.normal(size=(150, 3))]))
 
 
 @covering(name=[*WAVES], on=["spline", "surface", "nets"], along_u=[False, True])
