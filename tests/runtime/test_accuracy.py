@@ -4,43 +4,17 @@ References are the exact formulas of symbolic/surfaces.py. An order is the least
 log(largest error) against log(cell size) over four grids.
 """
 
-from dataclasses import dataclass
-
 import gaussmap as gm
 import numpy as np
 import pytest
-import sympy as sp
-from gaussmap.symbolic.surfaces import CATALOGUE
 from numpy.typing import NDArray
+
+from .exact import Exact
 
 Array = NDArray[np.float64]
 THREE = ["torus", "ellipsoid_patch", "wavy_graph"]
 OTHERS = ["hyperboloid", "monkey_saddle", "enneper", "catenoid", "moebius_band", "dupin_cyclide"]
 FAR_FROM_THE_POLES = 0.5  # radians of latitude
-
-
-@dataclass(frozen=True, eq=False)
-class Exact:
-    """The exact surface at parameters (k, 2)."""
-
-    name: str
-
-    def _values(self, expressions: tuple[sp.Expr, ...], uv: Array) -> Array:
-        surface = CATALOGUE[self.name]
-        exact = [sp.sympify(e).xreplace(surface.defaults) for e in expressions]
-        function = sp.lambdify((surface.u, surface.v), exact, "numpy", cse=True)
-        return np.stack([np.broadcast_to(x, len(uv)) for x in function(*uv.T)], axis=-1)
-
-    def points(self, uv: Array) -> Array:
-        return self._values(CATALOGUE[self.name].position, uv)
-
-    def normals(self, uv: Array) -> Array:
-        vectors = self._values(CATALOGUE[self.name].normal_field, uv)
-        return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-
-    def curvatures(self, uv: Array) -> Array:
-        surface = CATALOGUE[self.name]
-        return self._values((surface.gaussian_curvature, surface.mean_curvature), uv)
 
 
 def random_places(name: str, count: int = 20_000, margin: float = 0.0) -> Array:
@@ -135,42 +109,25 @@ def test_support_function_has_order_three(name: str) -> None:
 
 @pytest.mark.parametrize("name", [*THREE, *OTHERS, "ellipsoid", "sphere"])
 @pytest.mark.quick_for("torus", "wavy_graph")
-def test_curvatures_have_order_one(name: str) -> None:
-    """The curvatures of the spline jump from patch to patch; errors are as large as a cell."""
-    exact, normals = Exact(name), gm.fibonacci(20_000)
-    cells, gaussian, mean = [24, 48, 96, 192], [], []
+def test_samples_have_the_orders_of_the_spline_and_curvatures_order_one(name: str) -> None:
+    """The surface's own normal is order two off; curvatures jump from patch to patch."""
+    exact, normals, errors = Exact(name), gm.fibonacci(20_000), []
+    cells = [32, 64, 128, 256]
     for m in cells:
         samples = gm.sample(gm.surfaces.surface(name), normals=normals, cells=(m, m), on="spline")
         if "pole" in gm.surfaces.surface(name).boundary[1]:
             samples = samples[np.abs(samples.uv[:, 1]) < np.pi / 2 - FAR_FROM_THE_POLES]
         K, H = exact.curvatures(samples.uv).T
         size = np.sqrt(np.abs(K).max())
-        gaussian.append(float(np.abs(samples.gaussian_curvature - K).max() / size**2))
-        mean.append(float(np.abs(samples.mean_curvature - H).max() / size))
-    assert order(cells, gaussian) == pytest.approx(1.0, abs=0.35)
-    assert order(cells, mean) == pytest.approx(1.0, abs=0.35)
-    assert gaussian[-1] < 0.1
-    assert mean[-1] < 0.1
-
-
-def errors_of_samples(name: str, cells: list[int]) -> tuple[list[float], list[float]]:
-    """Return how far samples are from the surface, and their normals from those of the surface."""
-    exact, distances, angles = Exact(name), [], []
-    for m in cells:
-        surface = gm.surfaces.surface(name)
-        samples = gm.sample(surface, normals=gm.fibonacci(20_000), cells=(m, m), on="spline")
-        gap = np.linalg.norm(samples.points - exact.points(samples.uv), axis=1)
-        turn = np.linalg.norm(samples.normals - exact.normals(samples.uv), axis=1)
-        distances.append(float(gap.max()))
-        angles.append(float(turn.max()))
-    return distances, angles
-
-
-@pytest.mark.parametrize("name", THREE)
-@pytest.mark.quick_for("torus")
-def test_samples_have_their_normal_on_the_surface_too(name: str) -> None:
-    """Points are order three from the surface; the surface's normal there is order two off."""
-    cells = [32, 64, 128, 256]
-    distances, angles = errors_of_samples(name, cells)
+        errors.append([
+            np.linalg.norm(samples.points - exact.points(samples.uv), axis=1).max(),
+            np.linalg.norm(samples.normals - exact.normals(samples.uv), axis=1).max(),
+            np.abs(samples.gaussian_curvature - K).max() / size**2,
+            np.abs(samples.mean_curvature - H).max() / size,
+        ])  # fmt: skip
+    distances, angles, gaussian, mean = np.transpose(errors).tolist()
     assert order(cells, distances) == pytest.approx(3.0, abs=0.3)
     assert order(cells, angles) == pytest.approx(2.0, abs=0.2)
+    assert order(cells, gaussian) == pytest.approx(1.0, abs=0.35)
+    assert order(cells, mean) == pytest.approx(1.0, abs=0.35)
+    assert max(gaussian[-1], mean[-1]) < 0.1

@@ -13,7 +13,7 @@ from ..shapes import farthest, widest_angle
 
 AXIS, ANGLE = (1.0, 2.0, 0.5), 35.0
 ROUNDING = 1e-9
-AWAY = gm.Reach(from_edges=0.1)
+UP, AWAY = ((0, 0, 1), 180.0), gm.Reach(from_edges=0.1)
 
 
 def angles(normals: np.ndarray, axis: object = AXIS) -> np.ndarray:
@@ -88,32 +88,21 @@ def test_samples_keep_a_distance_from_the_boundary(how: dict[str, Any]) -> None:
     assert (samples.report.coverage or 0.0) <= how.get("coverage", 0.0)
 
 
-def test_closed_surfaces_have_no_edges() -> None:
-    whole, away = (gm.sample("torus", 100, reach=x) for x in (((0, 0, 1), 180.0), AWAY))
-    assert np.array_equal(whole.points, away.points)
-
-
-def test_many_surfaces_in_reach() -> None:
+def test_poles_and_small_reaches() -> None:
     for samples in gm.sample_many(["torus", "sphere"], 50, reach=(AXIS, ANGLE)):
         assert len(samples) == 50
         assert angles(samples.normals).max() <= ANGLE + ROUNDING
-
-
-def test_small_reaches_have_few_samples_for_an_angle() -> None:
-    samples = gm.sample("sphere", angle=3.0, reach=(AXIS, 6.0))
-    assert 4 <= len(samples) <= 40
-
-
-def test_poles_are_reached() -> None:
+    assert 4 <= len(gm.sample("sphere", angle=3.0, reach=(AXIS, 6.0))) <= 40
     north = [[0.0, 0.0, 1.0]]
     for on in ("surface", "spline"):
         assert len(gm.sample("sphere", normals=north, reach=((0, 0, 1), 20.0), on=on)) == 1
 
 
 def test_a_reach_of_everything_leaves_nothing_out() -> None:
-    whole, reached = (gm.sample("torus", 200, reach=x) for x in (None, (AXIS, 180.0)))
+    whole, reached, away = (gm.sample("torus", 200, reach=x) for x in (None, UP, AWAY))
     assert len(whole) == len(reached) == 200
     assert reached.coverage() < 1.3 * whole.coverage()
+    assert np.array_equal(reached.points, away.points)  # closed surfaces have no edges
 
 
 @pytest.mark.slow
@@ -150,10 +139,19 @@ def test_pieces_of_a_nurbs_keep_to_the_reach() -> None:
         (((0, 0, 0), 30), "axis of reach"),
         (((0, 0, 1), 0.0), "angle of reach"),
         (((0, 0, 1), 181.0), "angle of reach"),
+        ({"slope": (20, 10)}, "slope must be the least and the largest angle, at most 180"),
+        ({"aspect": (180, 120)}, "aspect must be a direction and an angle, at most 90"),
+        ({"slope": 20}, "slope"),
+        ({"angle": 0}, "the angle of reach"),
+        ({"from_edges": 0.0}, "from_edges must be a positive number"),
+        ({"clearance": 0.0}, "clearance must be a positive number"),
     ],
 )
 def test_unusable_reaches(reach: Any, message: str) -> None:
-    refused(message, gm.sample, "torus", 100, reach=reach)
+    if isinstance(reach, dict):
+        refused(message, gm.Reach, **reach)
+    else:
+        refused(message, gm.sample, "torus", 100, reach=reach)
 
 
 @pytest.mark.parametrize("surface", ["wavy_graph", ROOF])
@@ -188,18 +186,3 @@ def test_slopes_and_aspects_are_sectors_of_normals() -> None:
     area = inside.mean() * 4.0
     apart = KDTree(samples.points[:, :2]).query(np.stack([u, v], axis=1)[inside])[0].max()
     assert apart <= 2.0 * np.sqrt(area / 400.0)
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"slope": (20, 10)}, "slope must be the least and the largest angle, at most 180"),
-        ({"aspect": (180, 120)}, "aspect must be a direction and an angle, at most 90"),
-        ({"slope": 20}, "slope"),
-        ({"angle": 0}, "the angle of reach"),
-        ({"from_edges": 0.0}, "from_edges must be a positive number"),
-        ({"clearance": 0.0}, "clearance must be a positive number"),
-    ],
-)
-def test_unusable_slopes_and_aspects(given: dict[str, Any], message: str) -> None:
-    refused(message, gm.Reach, **given)

@@ -1,7 +1,6 @@
 """What a terminal shows while work takes longer than a second."""
 
 import inspect
-import io
 import re
 import select
 import sys
@@ -13,10 +12,7 @@ import pytest
 from gaussmap.runtime.base import progress
 from gaussmap.runtime.base.compiling import NOTICE
 
-
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
+from .test_compiling import Terminal
 
 
 def terminal_of(monkeypatch: pytest.MonkeyPatch) -> Terminal:
@@ -28,26 +24,30 @@ def terminal_of(monkeypatch: pytest.MonkeyPatch) -> Terminal:
     return shown
 
 
+def lines_of(terminal: Terminal) -> list[str]:
+    return [line.strip() for line in terminal.getvalue().split("\r") if line.strip()]
+
+
 def test_what_takes_long_is_shown_and_erased(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the step at hand and its share; also if there is an error."""
     terminal = terminal_of(monkeypatch)
-    with progress.busy("thinking", True):
-        time.sleep(0.2)
-    lines = [line.strip() for line in terminal.getvalue().split("\r") if line.strip()]
-    assert len(lines) > 1
-    assert set(lines) == {"thinking: 00:00"}
-    assert terminal.getvalue().endswith("\r")
 
+    def fail() -> None:
+        with progress.busy("thinking", True):
+            time.sleep(0.2)
+            progress.tell("hard", lambda: 0.25)
+            time.sleep(0.2)
+            progress.tell("twice")
+            time.sleep(0.1)
+            raise KeyError
 
-def test_the_step_at_hand_is_shown_with_its_share(monkeypatch: pytest.MonkeyPatch) -> None:
-    terminal = terminal_of(monkeypatch)
     progress.tell("of nothing")
-    with progress.busy("thinking", True):
-        progress.tell("hard", lambda: 0.25)
-        time.sleep(0.2)
-        progress.tell("twice")
-        time.sleep(0.1)
-    lines = {line.strip() for line in terminal.getvalue().split("\r") if line.strip()}
-    assert lines == {"thinking, hard, 25%: 00:00", "thinking, twice: 00:00"}
+    with pytest.raises(KeyError):
+        fail()
+    assert len(lines_of(terminal)) > 3
+    steps = ("thinking", "thinking, hard, 25%", "thinking, twice")
+    assert {*lines_of(terminal)} == {f"{x}: 00:00" for x in steps}
+    assert terminal.getvalue().endswith("\r")
 
 
 def test_meshing_shows_its_steps(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -70,19 +70,6 @@ def test_what_is_quick_or_not_asked_for_is_not_shown(monkeypatch: pytest.MonkeyP
     with progress.busy("thinking", True):
         time.sleep(0.1)
     assert "thinking" not in terminal.getvalue()
-
-
-def test_an_error_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    terminal = terminal_of(monkeypatch)
-
-    def fail() -> None:
-        with progress.busy("thinking", True):
-            time.sleep(0.1)
-            raise KeyError
-
-    with pytest.raises(KeyError):
-        fail()
-    assert terminal.getvalue().endswith("\r")
 
 
 def test_progress_stays_on_standard_error(

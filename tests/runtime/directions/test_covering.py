@@ -55,31 +55,26 @@ def by_search(normals: Array) -> tuple[float, float]:
 # --- exact cases ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("normals", "cosine"),
-    [
-        (AXES, 3**-0.5),
-        (CUBE, 3**-0.5),
-        (TETRAHEDRON, 1 / 3),
-        (gm.icosphere(1), np.sqrt((5 + 2 * np.sqrt(5)) / 15)),
-        (gm.directions.healpix(1), 2 / 3),
-    ],
-    ids=["octahedron", "cube", "tetrahedron", "icosahedron", "healpix"],
-)
-def test_platonic_solids(normals: Array, cosine: float) -> None:
-    assert abs(gm.directions.covering_radius(normals) - np.degrees(np.arccos(cosine))) < ACCURACY
-    repeated = np.concatenate([normals, 3 * normals])
-    assert abs(gm.directions.covering_radius(repeated) - np.degrees(np.arccos(cosine))) < ACCURACY
+def degrees(cosine: float) -> float:
+    return float(np.degrees(np.arccos(cosine)))
 
 
-@pytest.mark.parametrize("normals", [[[0, 0, 1]], [[0, 3, 4]] * 5])
-def test_one_normal(normals: Any) -> None:
-    assert gm.directions.covering_radius(normals) == 180.0
+EXACT: dict[str, tuple[Any, float]] = {
+    "octahedron": (AXES, degrees(3**-0.5)),
+    "cube": (CUBE, degrees(3**-0.5)),
+    "tetrahedron": (TETRAHEDRON, degrees(1 / 3)),
+    "icosahedron": (gm.icosphere(1), degrees(np.sqrt((5 + 2 * np.sqrt(5)) / 15))),
+    "healpix": (gm.directions.healpix(1), degrees(2 / 3)),
+    "one normal": ([[0, 3, 4]], 180.0),
+    **{f"{x} degrees": (ring(90, [0, x]), 180 - x / 2) for x in (1e-6, 1.0, 90.0, 179.0, 180.0)},
+}
 
 
-@pytest.mark.parametrize("angle", [1e-6, 1.0, 90.0, 179.0, 180.0])
-def test_two_normals(angle: float) -> None:
-    assert abs(gm.directions.covering_radius(ring(90, [0, angle])) - (180 - angle / 2)) < ACCURACY
+@pytest.mark.parametrize("name", EXACT)
+def test_exact_cases(name: str) -> None:
+    normals, radius = EXACT[name]
+    for repeated in (normals, np.concatenate([normals, 3 * np.asarray(normals)])):
+        assert abs(gm.directions.covering_radius(repeated) - radius) < ACCURACY
 
 
 # --- brute force ----------------------------------------------------------------------------------

@@ -1,5 +1,7 @@
 """What kernels of tapes find over boxes, and NURBS graphs, for tests."""
 
+from collections.abc import Callable
+from itertools import product
 from typing import Any
 
 import gaussmap as gm
@@ -9,6 +11,11 @@ from gaussmap.runtime.tape.kernels.points import POINT, Tape, points_jets
 from gaussmap.runtime.tape.kernels.rounding import rounding_of_boxes
 
 ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
+
+
+def tape_of(surface: gm.Surface) -> Tape:
+    assert surface.tape is not None
+    return surface.tape
 
 
 def registers(tape: Tape) -> np.ndarray:
@@ -37,6 +44,30 @@ def errors_on(tape: Tape, centres: np.ndarray, widths: np.ndarray) -> np.ndarray
     middles, radii, errors = (registers(tape) for _ in range(3))
     rounding_of_boxes(tape, centres, widths, middles, radii, errors, ends, bounds)
     return bounds
+
+
+def check(tape: Tape, exact: Callable[..., Any], found: tuple[np.ndarray, ...]) -> None:
+    """Assert that bounds hold at places of boxes; `exact` returns coefficients (10, 3) there."""
+    centres, widths, places = found
+    balls = balls_on(tape, centres, widths).astype(object)
+    errors = errors_on(tape, centres, widths).astype(object)
+    jets = jets_at(tape, places).astype(object)
+    for k, place in enumerate(places.tolist()):
+        values, (middles, radii) = exact(*place), balls[k]
+        known = np.isfinite(radii.astype(np.float64))
+        assert (abs(values - middles)[known] <= radii[known]).all(), place
+        assert (abs(values[:6] - jets[k]) <= errors[k]).all(), place
+
+
+def used_radii(balls: np.ndarray, exact: Callable[..., Any], *boxes: np.ndarray) -> np.ndarray:
+    """Return the largest errors at corners of boxes, relative to the radii of balls."""
+    centres, widths = boxes
+    used = np.zeros(balls[:, 1].shape)
+    for signs in product((-1, 1), repeat=2):
+        for k, place in enumerate((centres + np.array(signs) * widths).tolist()):
+            off = np.abs(exact(*place).astype(np.float64) - balls[k, 0])
+            used[k] = np.maximum(used[k], off / (balls[k, 1] + 1e-300))
+    return used
 
 
 def boxes(low: Any, high: Any, width: Any, count: int, seed: int) -> tuple[np.ndarray, ...]:

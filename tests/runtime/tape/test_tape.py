@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable
 from functools import cache
-from itertools import product
 from typing import Any
 
 import gaussmap as gm
@@ -18,14 +17,14 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from ...products import covering
-from .made import ORDERS, balls_on, boxes, errors_on, jets_at
+from . import made
+from .made import ORDERS, balls_on, boxes, check, errors_on, jets_at, used_radii
 
 DIGITS = 32
 # Half widths of boxes relative to the domain: cells of a search, smaller ones, points.
 WIDTHS = (1 / 32, 1e-3, 1e-9, 0.0)
 
 u, v = sp.symbols("u v", real=True)
-EACH = pytest.mark.parametrize("name", CATALOGUE)
 
 
 # --- what is compared -----------------------------------------------------------------------------
@@ -62,32 +61,18 @@ def boxes_of(surface: gm.Surface, count: int, width: float, seed: int) -> tuple[
     return boxes(low, high, width * (high - low), count, seed)
 
 
-def check(tape: Tape, exact: Callable[..., Any], found: tuple[np.ndarray, ...]) -> None:
-    """Assert that bounds hold at places of boxes."""
-    centres, widths, places = found
-    balls, errors = balls_on(tape, centres, widths), errors_on(tape, centres, widths)
-    jets = jets_at(tape, places)
-    with mp.workdps(DIGITS):
-        for k, place in enumerate(places.tolist()):
-            values = exact(*place)
-            middles, radii = balls[k].astype(object)
-            assert (abs(values - middles) <= radii).all(), place
-            assert (abs(values[:6] - jets[k].astype(object)) <= errors[k].astype(object)).all()
-
-
 # --- the catalogue --------------------------------------------------------------------------------
 
 
 def tape_of(name: str) -> Tape:
-    tape = gm.surfaces.surface(name).tape
-    assert tape is not None
-    return tape
+    return made.tape_of(gm.surfaces.surface(name))
 
 
 @covering(name=gm.surfaces.names(), width=WIDTHS)
 def test_bounds_contain_exact_values(name, width):
     surface = gm.surfaces.surface(name)
-    check(tape_of(name), of_catalogue(name), boxes_of(surface, 50, width, 1))
+    with mp.workdps(DIGITS):
+        check(tape_of(name), of_catalogue(name), boxes_of(surface, 50, width, 1))
 
 
 @pytest.mark.parametrize("name", ["torus", "sphere", "catenoid", "wavy_graph", "moebius_band"])
@@ -96,15 +81,11 @@ def test_bounds_of_third_derivatives_are_attained(name):
     surface = gm.surfaces.surface(name)
     centres, widths, _ = boxes_of(surface, 40, 1e-3, 4)
     balls = balls_on(tape_of(name), centres, widths)
-    used = np.zeros(balls[:, 1].shape)
-    for signs in product((-1, 1), repeat=2):
-        for k, place in enumerate(centres + np.array(signs) * widths):
-            values = of_catalogue(name)(*place).astype(np.float64)
-            used[k] = np.maximum(used[k], np.abs(values - balls[k, 0]) / (balls[k, 1] + 1e-300))
+    used = used_radii(balls, of_catalogue(name), centres, widths)
     assert np.median(used[:, 6:][balls[:, 1, 6:] > 1e-9]) > 0.9
 
 
-@EACH
+@pytest.mark.parametrize("name", CATALOGUE)
 def test_bounds_of_rounding_are_a_few_units_for_each_operation(name):
     surface = gm.surfaces.surface(name)
     centres, widths, _ = boxes_of(surface, 40, 1 / 32, 5)
@@ -222,8 +203,8 @@ def test_bounds_contain_exact_values_of_any_expression(position, s, t, width):
     ],
 )  # fmt: skip
 def test_radii_are_infinite_where_there_is_a_singularity(text):
-    tape = gm.Surface.from_sympy(("u", "v", text), ("u", "v"), ((-1, 1), (-1, 1))).tape
-    assert tape is not None
+    square = (-1, 1), (-1, 1)
+    tape = made.tape_of(gm.Surface.from_sympy(("u", "v", text), ("u", "v"), square))
     centres, widths = np.array([[0.1, 0.0]]), np.array([[0.2, 0.1]])
     middles, radii = balls_on(tape, centres, widths)[0]
     assert np.isfinite(middles).all()
