@@ -5,12 +5,11 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.meshes.meshing import triangulated
 
 from ...products import covering
 from ...refusals import refused
-from .test_meshing import NO_AREA, PREFER, TURN, components, is_one_fan_at_each_vertex, latitude
+from .test_meshing import NO_AREA, PREFER, TURN, check_topology, latitude, on_spline
 from .test_meshing import surfaces as all_surfaces
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
@@ -43,41 +42,24 @@ FEW_UNCOMPILED = pytest.mark.parametrize(
 )
 
 
-def on_grid(name: str, lines: tuple[int, int], between: Any = None, graded: bool = True) -> Any:
+def on_grid(surface: str | gm.Surface, lines: tuple[int, int], between: Any = None) -> Any:
     """Return samples on a grid of lines of u and v, and at places in the unit square `between`."""
-    surface = surfaces[name][0]()
+    surface = surfaces[surface][0]() if isinstance(surface, str) else surface
     spline = gm.fit(surface, cells=(16, 16))
     places = [(np.arange(n) + 0.5) / n for n in lines]
-    if graded:
-        places = [x + 0.08 * np.sin(2 * np.pi * x) for x in places]
+    places = [x + 0.08 * np.sin(2 * np.pi * x) for x in places]
     column, row = (x.ravel() for x in np.indices(lines))
     unit = np.stack([places[0][column], places[1][row]], axis=1)
     if between is not None:
         unit = np.concatenate([unit, between])
         row, column = (np.append(x, np.full(len(between), -1)) for x in (row, column))
     low, high = np.array(spline.domain).T
-    uv = low + unit * (high - low)
-    return gm.Samples(
-        points=spline.evaluate(*uv.T), normals=spline.normals(*uv.T), uv=uv, row=row,
-        column=column, report=SamplingReport(name, None, len(uv), None, None, None), spline=spline,
-        surface=surface,
-    )  # fmt: skip
+    return on_spline(spline, low + unit * (high - low), row=row, column=column, surface=surface)
 
 
-def changed(samples: gm.Samples, **fields: Any) -> gm.Samples:
-    """Return samples with other fields."""
-    arrays: dict[str, Any] = samples.arrays() | fields
-    return gm.Samples(
-        **arrays, report=samples.report, spline=samples.spline, surface=samples.surface
-    )
-
-
-def check(name: str, mesh: gm.Mesh) -> None:
+def check(mesh: gm.Mesh, characteristic: int, borders: int) -> None:
     """Check that a mesh is the whole surface, without folds and flat triangles."""
-    _, characteristic, borders = surfaces[name]
-    assert mesh.euler_characteristic == characteristic
-    assert (components(mesh.boundary_edges) if borders else 0) == borders
-    assert is_one_fan_at_each_vertex(mesh)
+    check_topology(mesh, characteristic, borders)
     assert mesh.smallest_angles.min() > NO_AREA
     assert mesh.angles.max() < 90.0
     directed = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
@@ -90,7 +72,7 @@ class TestTopology:
     def test_a_grid_makes_the_whole_surface(self, name, prefer):
         samples = on_grid(name, (14, 11))
         mesh = samples.mesh(prefer=prefer)
-        check(name, mesh)
+        check(mesh, *surfaces[name][1:])
         used = mesh.sample_index[mesh.sample_index >= 0]
         # Of three in a line, as on a cone, one may be left out.
         assert len(np.unique(used)) == len(used) >= len(samples) - (name == "cone")
@@ -111,7 +93,7 @@ class TestTopology:
         between = np.concatenate([rng.uniform(0.0, 1.0, (20, 2)), special])
         samples = on_grid(name, (14, 11), between)
         mesh = samples.mesh(prefer=prefer)
-        check(name, mesh)
+        check(mesh, *surfaces[name][1:])
         used = set(mesh.sample_index.tolist()) - {-1}
         # Of three in a line, as on a cone, one may be left out.
         assert len(set(range(len(grid))) - used - {40, 41}) <= (name == "cone")
@@ -132,17 +114,13 @@ class TestTopology:
             lambda u, v: np.stack([v * np.cos(u), v * np.sin(u), 0.0 * u], axis=-1),
             (TURN, (0.5, 1.0)), (True, False),
         )  # fmt: skip
-        surfaces["disk"] = (lambda: disk, 0, 2)
         between = np.stack([np.linspace(0.03, 0.9, 9), np.full(9, 0.999)], axis=1)
         for prefer in PREFER:
-            check("disk", on_grid("disk", (12, 6), between).mesh(prefer=prefer))
-        del surfaces["disk"]
+            check(on_grid(disk, (12, 6), between).mesh(prefer=prefer), 0, 2)
 
     def test_grids_of_one_line(self):
         for name, lines in (("ellipsoid", (5, 1)), ("graph", (1, 1)), ("graph", (1, 6))):
-            samples = on_grid(name, lines)
-            mesh = samples.mesh()
-            assert mesh.euler_characteristic == surfaces[name][1]
+            check_topology(on_grid(name, lines).mesh(), *surfaces[name][1:])
 
 
 class TestOtherSamples:
@@ -160,14 +138,15 @@ class TestOtherSamples:
     @pytest.mark.parametrize("name", ["torus", "graph"])
     def test_parts_of_grids(self, name):
         samples = on_grid(name, (12, 9))
-        for other in (samples[samples.column != 4], samples[::2], changed(samples, row=None)):
-            assert other.mesh().euler_characteristic == surfaces[name][1]
+        rowless = on_spline(samples.spline, samples.uv, column=samples.column)
+        for other in (samples[samples.column != 4], samples[::2], rowless):
+            check_topology(other.mesh(), *surfaces[name][1:])
 
     @compiled
     def test_too_many_between_the_lines(self):
         rng = np.random.default_rng(2)
         samples = on_grid("graph", (6, 6), rng.uniform(0.0, 1.0, (40, 2)))
-        assert samples.mesh().euler_characteristic == 1
+        check_topology(samples.mesh(), 1, 1)
 
 
 def check_nodes(samples):
@@ -183,8 +162,7 @@ class TestAligned:
     @covering(prefer=PREFER, name=["torus", "ellipsoid", "graph"])
     def test_samples_of_that_density(self, name, prefer):
         samples = gm.sample(surfaces[name][0](), count=700, density="aligned", cells=(16, 16))
-        assert isinstance(samples.spline, gm.Spline)
-        check(name, samples.mesh(prefer=prefer))
+        check(samples.mesh(prefer=prefer), *surfaces[name][1:])
 
     @pytest.mark.parametrize(
         ("name", "fields"),
@@ -201,29 +179,23 @@ class TestAligned:
             said = refused("", made, error=gm.errors.MissingFieldError)
             assert f"a mesh needs {' and '.join(lacking)}, but" in said
 
-    @pytest.mark.parametrize("name", ["ellipsoid_patch", "sphere", "wavy_graph"])
-    def test_no_other_field_matters(self, name):
+    @pytest.mark.parametrize(
+        "surface",
+        [
+            "ellipsoid_patch", "sphere", "wavy_graph", "moebius_band",
+            gm.surfaces.ellipsoid_patch().trimmed(within=lambda u, v: u + v < 5.0),
+        ],
+    )  # fmt: skip
+    def test_no_other_field_matters(self, surface):
         """Each sample of a grid is a vertex, whether it knows more than a mesh needs or not."""
         fields = ("points", "normals", "uv", "row", "column")
         whole, few = (
-            gm.sample(name, 300, density="aligned", cells=(16, 16), fields=x)
+            gm.sample(surface, 400, density="aligned", cells=(16, 16), fields=x)
             for x in (None, fields)
         )
         np.testing.assert_array_equal(whole.mesh().triangles, few.mesh().triangles)
         check_nodes(whole)
-
-    @pytest.mark.parametrize("name", ["trimmed", "one-sided", "part of a grid"])
-    def test_grids_that_are_not_whole_keep_their_samples(self, name):
-        surface = gm.surfaces.moebius_band()
-        if name != "one-sided":
-            surface = gm.surfaces.ellipsoid_patch()
-        if name == "trimmed":
-            surface = surface.trimmed(within=lambda u, v: u + v < 5.0)
-        samples = gm.sample(surface, 400, density="aligned", cells=(16, 16))
-        if name == "part of a grid":
-            samples = samples[samples.column % 5 != 3]
-        assert isinstance(samples.spline, gm.Spline)
-        check_nodes(samples)
+        check_nodes(whole[whole.column % 5 != 3])
 
     def test_too_small_for_a_grid(self):
         """No line meets the part that is left: then the samples are on no grid, and say so."""
@@ -238,14 +210,11 @@ class TestAligned:
         assert samples.report.density is None
         assert samples.mesh().euler_characteristic == 1
 
-    def test_weights_and_offsets(self):
+    def test_weights_offsets_and_parts_by_angle(self):
         samples = gm.sample("torus", 700, density="aligned", cells=(16, 16))
         area = 4 * np.pi**2 * 0.35  # the torus (1, 0.35)
         assert samples.weights().sum() == pytest.approx(area, rel=1e-3)
-        check("torus", samples.offset(0.05).mesh())
-
-    def test_a_part_by_angle(self):
-        samples = gm.sample("torus", 700, density="aligned", cells=(16, 16))
+        check(samples.offset(0.05).mesh(), 0, 0)
         whole, part = samples.mesh(angle=90.0), samples[samples.row > 3].mesh(angle=30.0)
-        check("torus", whole)
+        check(whole, 0, 0)
         assert len(part.boundary_edges) > 0
