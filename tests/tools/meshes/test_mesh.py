@@ -1,6 +1,7 @@
 """The mesh as an object."""
 
 import pickle
+from itertools import permutations
 
 import gaussmap as gm
 import numpy as np
@@ -25,6 +26,15 @@ class TestMesh:
         np.testing.assert_allclose(turned.angles, [180, 180], rtol=1e-7)
         across = square(normals=-square().normals, sides=np.full((2, 3), -1))
         np.testing.assert_allclose(across.angles, [45, 60], rtol=1e-12)
+
+    def test_orders_of_corners(self):
+        """All three normals are above the triangle, the farthest 45 degrees from its own."""
+        orders = np.array(list(permutations(range(3))))
+        upward = np.linalg.det(np.eye(3)[orders]) > 0.0
+        for side, from_above in ((1, upward), (-1, ~upward)):
+            found = square(triangles=orders, sides=np.full((6, 3), side)).angles
+            np.testing.assert_allclose(found, np.where(from_above, 45.0, 180.0), rtol=1e-7)
+        assert len(set(square(triangles=orders).smallest_angles)) == 1
 
     def test_a_triangle_without_area(self):
         flat = square(triangles=np.array([[0, 1, 1]]))
@@ -86,10 +96,3 @@ class TestMesh:
     )
     def test_unusable_arrays(self, changes, message):
         refused(message, square, **changes)
-
-
-@pytest.mark.compiled
-def test_faces_are_the_triangles():
-    """By the name of trimesh; the field is one, so that both stay the same."""
-    mesh = gm.sample("torus", 60, cells=(8, 8)).mesh()
-    assert mesh.faces is mesh.triangles

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
-from ...shapes import TURN, klein
+from ...shapes import TURN, klein, square
 
 # The largest extent of the texture coordinates of a triangle, of about 1,500 of them.
 WIDEST = 0.35
@@ -39,10 +39,7 @@ def test_they_are_the_parameters_less_whole_periods(name: str) -> None:
 
 @pytest.mark.kernels
 def test_without_a_domain_they_are_the_parameters() -> None:
-    corners = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0]])
-    triangle, index = np.array([[0, 1, 2]]), np.arange(3)
-    mesh = gm.Mesh(corners, corners, corners[:, :2] * 7.0, triangle, index)
-    assert np.array_equal(mesh.corner_uv, mesh.uv[triangle])
+    assert np.array_equal(square().corner_uv, square().uv[square().triangles])
 
 
 def test_files_have_them(tmp_path) -> None:
