@@ -228,7 +228,7 @@ def test_both_sides_of_an_apex():
     )
 
 
-# --- faces of splines: a search by differences from many starts -----------------------------------
+# --- faces of splines: places whose normals are known by differences ------------------------------
 
 NODES = np.arange(3) / 2
 GRID = np.stack(np.meshgrid(NODES, NODES, indexing="ij"), axis=-1)
@@ -278,40 +278,15 @@ def in_polygon(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     return r * np.cos(angle % part - part / 2) < 0.4 * math.cos(part / 2)
 
 
-def roots(f, normals: np.ndarray, sign: float, inside=in_polygon) -> list[np.ndarray]:
-    """Return the regular places (k, 2) inside with each normal, of 64 starts.
-
-    Normals point to the side `sign` of x_u × x_v.
-    """
-    starts = (np.arange(8) + 0.5) / 8
-    u, v = (np.tile(x.ravel(), len(normals)) for x in np.meshgrid(starts, starts))
-    owner = np.repeat(np.arange(len(normals)), 64)
-    n, h = normals[owner], 1e-3
-
-    def slopes(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        return np.einsum("akx,kx->ak", tangents(f, u, v, 2.0**-8), n)
-
-    for _ in range(8):
-        g = slopes(u, v)
-        g_u = (slopes(u + h, v) - slopes(u - h, v)) / (2 * h)
-        g_v = (slopes(u, v + h) - slopes(u, v - h)) / (2 * h)
-        determinant = g_u[0] * g_v[1] - g_u[1] * g_v[0]
-        du = (g[0] * g_v[1] - g[1] * g_v[0]) / determinant
-        dv = (g_u[0] * g[1] - g_u[1] * g[0]) / determinant
-        u, v = np.clip(u - du, 0.0, 1.0), np.clip(v - dv, 0.0, 1.0)
-    outward = sign * np.einsum("kx,kx->k", np.cross(*tangents(f, u, v, 2.0**-8)), n)
-    good = (np.abs(slopes(u, v)).max(axis=0) < 1e-7) & (outward > 0.02) & inside(u, v)
-    places = np.stack([u, v], axis=1)
-    return [clusters(places[good & (owner == k)]) for k in range(len(normals))]
+def normals_by_differences(f, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    found = np.cross(*tangents(f, u, v, 2.0**-8))
+    return found / np.linalg.norm(found, axis=1, keepdims=True)
 
 
-def clusters(places: np.ndarray) -> np.ndarray:
-    """Return one of places (k, 2) that are closer than 1e-3 to one another."""
-    found = list[np.ndarray]()
-    for place in places:
-        if not any(np.abs(place - x).max() < 1e-3 for x in found):
-            found.append(place)
-    return np.array(found).reshape(-1, 2)
+def times_found(samples: gm.Samples, own: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return how many points of each normal are at its place; `own` are their parameters."""
+    away = np.abs(own - places[samples.normal_index]) - samples.uv_radius
+    return np.bincount(samples.normal_index[away.max(axis=1) < 1e-5], minlength=len(places))
 
 
 def faces_of_splines() -> dict:
@@ -332,30 +307,24 @@ def faces_of_splines() -> dict:
 @pytest.mark.parametrize("name", faces_of_splines())
 @pytest.mark.quick_for("nurbs", "revolution")
 def test_points_of_faces_of_splines(name, is_reversed):
-    """Normals are those of random places, and their opposites, so that most have points."""
+    """Random places are found once, and all that is found is inside and has the normal."""
     geometry, f = faces_of_splines()[name]
     ends, loops = (0.1, 0.9), [0.5 + circle(0.4, 24)]
     trimmed = FaceRecord(geometry, (ends, ends), loops=loops, area=0.5, reversed=is_reversed)
-    u, v = np.random.default_rng(7).uniform(0.1, 0.9, (2, 15))
-    normals = np.cross(*tangents(f, u, v, 2.0**-8))
-    normals = np.concatenate([normals, -normals])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    places = np.random.default_rng(7).uniform(0.1, 0.9, (100, 2))
+    regular = np.linalg.norm(np.cross(*tangents(f, *places.T, 2.0**-8)), axis=1) > 0.02
+    places = places[regular & in_polygon(*places.T)]
+    sign = -1.0 if is_reversed else 1.0
+    normals = sign * normals_by_differences(f, *places.T)
     samples = gm.sample(part([trimmed]), normals=normals)
-    assert samples.report.estimated_faces == 0
-    sign, total, wrong = -1.0 if is_reversed else 1.0, 0, 0
-    for k, places in enumerate(roots(f, normals, sign)):
-        mine = samples.uv[samples.normal_index == k].copy()
-        if is_reversed:
-            mine[:, 0] = 1.0 - mine[:, 0]
-        total += len(places)
-        same = len(places) == len(mine)
-        if same and len(mine):
-            gaps = np.abs(places[:, None] - mine[None]).max(axis=2)
-            same = bool((gaps.min(axis=0) < 1e-5).all() and (gaps.min(axis=1) < 1e-5).all())
-        wrong += not same
-    assert samples.report.proved == 30
-    assert wrong == 0
-    assert total > 8
+    assert (samples.report.estimated_faces, samples.report.proved) == (0, len(places))
+    own = samples.uv * [sign, 1.0] + [float(is_reversed), 0.0]
+    assert (times_found(samples, own, places) == 1).all()
+    assert in_polygon(*own.T).all()
+    there = sign * normals_by_differences(f, *own.T)
+    np.testing.assert_allclose(there, normals[samples.normal_index], atol=1e-6)
+    each = np.column_stack([samples.normal_index, own.round(4)])
+    assert len(np.unique(each, axis=0)) == len(own)
 
 
 def untrimmed(geometry: Geometry) -> gm.Part:
@@ -389,29 +358,23 @@ def test_a_triangular_face():
     def f(u: np.ndarray, v: np.ndarray) -> np.ndarray:
         return np.einsum("ki,kj,ijx->kx", bernstein(u), bernstein(v), points)
 
+    random = np.random.default_rng(3)
     u = np.concatenate([np.linspace(0.1, 0.9, 20), 1.0 - np.logspace(-1, -6, 20)])
-    v = np.random.default_rng(3).uniform(0.1, 0.9, 40)
-    normals = np.cross(*tangents(f, u, v, 2.0**-8)) / (1.0 - u)[:, None]
-    normals = np.concatenate([normals / np.linalg.norm(normals, axis=1)[:, None], -normals[:20]])
-    normals = np.concatenate([normals, random_normals(200)])
+    places = np.stack([u, random.uniform(0.1, 0.9, 40)], axis=1)
+    places = np.concatenate([places, random.uniform(0.02, 0.97, (200, 2))])
+    normals = normals_by_differences(f, *places.T)
     samples = gm.GaussMap(untrimmed(nurbs(points))).points(normals)
     boxes: dict[int, list[tuple[float, ...]]] = {}
     for x in samples.report.undecided:
         boxes.setdefault(x.normal, []).append(x.box)
     assert set(boxes) <= set(range(23, 40))
-    for k in range(40):
-        if k in boxes:
-            assert any(x[0] <= u[k] <= x[1] and x[2] <= v[k] <= x[3] for x in boxes[k])
-        else:
-            mine = samples[samples.normal_index == k]
-            gaps = np.abs(mine.uv - [u[k], v[k]]) - np.asarray(mine.uv_radius)
-            assert gaps.max(axis=1).min() < 1e-4
-    chosen = normals[40:] / np.linalg.norm(normals[40:], axis=1)[:, None]
-    expected = [
-        len(x) for x in roots(f, chosen, 1.0, lambda u, v: (u < 0.97) & (u > 0) & (v > 0) & (v < 1))
-    ]
-    found = np.bincount(samples.normal_index[samples.uv[:, 0] < 0.97], minlength=len(normals))
-    assert found[40:].tolist() == expected
+    for k, (u, v) in enumerate(places):
+        assert k not in boxes or any(x[0] <= u <= x[1] and x[2] <= v <= x[3] for x in boxes[k])
+    known = ~np.isin(np.arange(240), [*boxes])
+    assert (times_found(samples, samples.uv, places)[known] == 1).all()
+    away = samples.uv[:, 0] < 0.97
+    there = normals_by_differences(f, *samples.uv[away].T)
+    np.testing.assert_allclose(there, normals[samples.normal_index[away]], atol=1e-6)
 
 
 def test_the_kinds_that_are_proved():
