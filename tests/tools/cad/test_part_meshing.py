@@ -13,12 +13,9 @@ import pytest
 from gaussmap.tools.cad import part_meshing as meshing
 from gaussmap.tools.cad.examples import box, box_faces
 from gaussmap.tools.cad.face_pieces import FacePiece
-from gaussmap.tools.cad.mesh_edges import MeshEdges
-from gaussmap.tools.cad.mesh_grading import graded
-from gaussmap.tools.cad.mesh_spacing import Spacing, TurnedPiece
+from gaussmap.tools.cad.mesh_spacing import TurnedPiece
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.part_mesh import PartMesh
-from gaussmap.tools.cad.results import space_of
 
 from ...refusals import refused
 from . import made
@@ -200,12 +197,24 @@ def crossed_box() -> Part:
     return whole
 
 
-def test_a_face_whose_border_crosses_itself_is_missing():
+def unplaced_box() -> Part:
+    """Return a box of which an edge of face 2 has no places."""
+    whole = box(*SIZES)
+    side, _ = whole.faces[2].wires[0][1]
+    whole.arrays["side_points"][whole.arrays["side_point_starts"][side]] = np.nan
+    return whole
+
+
+@pytest.mark.parametrize(
+    ("whole", "missing", "why"),
+    [(crossed_box, 5, "of face 5 .* crosses itself"), (unplaced_box, 2, "face 2 .* are not known")],
+)
+def test_a_face_whose_border_is_bad_is_missing(whole, missing, why):
     """The other faces are there, and the mesh never says that it is closed."""
-    with pytest.warns(gm.GaussmapWarning, match="lacks 1 face of 6: of face 5 .* crosses itself"):
-        mesh = meshed(crossed_box(), 400)
-    assert list(mesh.failed) == [5]
-    assert set(mesh.face_index.tolist()) == {0, 1, 2, 3, 4}
+    with pytest.warns(gm.GaussmapWarning, match=f"lacks 1 face of 6: {why}"):
+        mesh = meshed(whole(), 400)
+    assert list(mesh.failed) == [missing]
+    assert set(mesh.face_index.tolist()) == set(range(6)) - {missing}
     assert (mesh.closed, mesh.euler_characteristic) == (False, 1)
     assert "1 face missing" in mesh.summary()
 
@@ -250,16 +259,6 @@ def test_vertices_of_triangles_that_point_inward_are_replaced(monkeypatch):
     for old, mesh in zip(bad, tried[1:], strict=False):
         used = mesh.vertices[np.unique(mesh.triangles)]
         assert np.linalg.norm(used[:, None] - old, axis=2).min(axis=0).max() > 0.01
-
-
-def test_edges_without_places_leave_their_faces_out():
-    whole = box(*SIZES)
-    side, _ = whole.faces[2].wires[0][1]
-    whole.arrays["side_points"][whole.arrays["side_point_starts"][side]] = np.nan
-    with pytest.warns(gm.GaussmapWarning, match="lacks 1 face of 6: face 2 .* are not known"):
-        mesh = meshed(whole, 100)
-    assert list(mesh.failed) == [2]
-    assert len(mesh.boundary_edges)
 
 
 @pytest.mark.parametrize(
@@ -413,13 +412,6 @@ def test_normals_of_waves_are_seen():
     assert turned.lengths[0][-1] == pytest.approx(20.0 * np.arctan(slope), rel=0.05)
 
 
-def test_a_parameter_along_which_normals_do_not_turn_counts_a_little():
-    """Otherwise a cylinder would have no area in its plane."""
-    turned = TurnedPiece.of_piece(FacePiece.of(CYLINDER.faces[0]), 0)
-    assert turned.lengths[0][-1] == pytest.approx(TURN, rel=1e-3)
-    assert turned.lengths[1][-1] == pytest.approx(1e-3 * turned.lengths[0][-1], rel=1e-12)
-
-
 def test_faces_whose_normals_are_the_same_do_not_share_vertices():
     """Planes of two faces are apart: each of both has vertices as if it were alone."""
     mesh = meshed(gm.Part([arch(0.8), moved(arch(0.8), (5.0, 0.0, 0.0))]), 400, "normals")
@@ -437,16 +429,6 @@ def test_sizes_grow_slowly_from_edges():
     lengths = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     inside = np.linalg.norm(corners.mean(axis=1)[:, :2], axis=1) < 0.6
     assert lengths[inside].mean() > 6.0 * TURN / (len(mesh.lines[0]) - 1)
-
-
-def test_candidates_for_a_count_are_as_dense_as_cells_near_edges():
-    """Light candidates have the sizes that grow from the edges; else meshes are thin there."""
-    whole = space_of(cylinder(height=0.02), None)
-    space = graded(MeshEdges.of(Spacing(whole, 1500)))
-    radius = 0.02 * np.sqrt(space.area)
-    cells, (light, _) = space.cut(radius), space.candidates(radius)
-    assert cells.rows[:, 6].max() > 5.0 * space.target.floor
-    np.testing.assert_allclose(light.rows, cells.rows, rtol=1e-12)
 
 
 def test_steps_along_edges_are_even_whatever_their_parameters():

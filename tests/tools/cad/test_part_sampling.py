@@ -20,12 +20,7 @@ from ...products import covering
 from ...refusals import refused
 from ...shapes import farthest, same, widest_angle
 from . import made
-from .made import HALF, KINDS, UNIT, circle, cylinder_faces, face, noted, part
-
-
-@pytest.fixture(scope="module")
-def cylinder() -> Part:
-    return part(cylinder_faces(), "cylinder")
+from .made import CYLINDER, HALF, KINDS, UNIT, circle, face, noted, part
 
 
 @pytest.fixture(scope="module")
@@ -51,8 +46,8 @@ def points_on_cylinder(count: int = 40_000) -> np.ndarray:
 
 
 @pytest.mark.parametrize("count", [1, 2, 5, 6, 7, 60, 500])
-def test_count_is_exact(cylinder, count):
-    samples = gm.sample(cylinder, count)
+def test_count_is_exact(count):
+    samples = gm.sample(CYLINDER, count)
     assert len(samples) == count == samples.report.samples
     if count >= 6:  # twice the faces
         assert set(samples.face_index.tolist()) == {0, 1, 2}
@@ -85,25 +80,25 @@ def test_samples_are_on_their_faces(plates, density):
 
 @pytest.mark.parametrize("coverage", [0.5, 0.2])
 @pytest.mark.parametrize("density", ["balanced", "uniform"])
-def test_coverage_holds_for_the_part(cylinder, coverage, density):
-    samples = gm.sample(cylinder, coverage=coverage, density=density)
+def test_coverage_holds_for_the_part(coverage, density):
+    samples = gm.sample(CYLINDER, coverage=coverage, density=density)
     assert farthest(samples, points_on_cylinder()) <= samples.report.coverage <= coverage
     assert samples.coverage() <= samples.report.coverage
     # Squares of half the diagonal cover as much by twice as many samples; edges cost some, and so
     # does the curvature of the side.
     most = 1.6 if density == "uniform" else 2.2
-    assert len(samples) < most * cylinder.area / (2 * coverage**2) + 30
+    assert len(samples) < most * CYLINDER.area / (2 * coverage**2) + 30
 
 
-def test_count_and_coverage(cylinder):
-    samples = gm.sample(cylinder, 200, coverage=0.42)
+def test_count_and_coverage():
+    samples = gm.sample(CYLINDER, 200, coverage=0.42)
     assert len(samples) == 200
     assert farthest(samples, points_on_cylinder()) <= samples.report.coverage <= 0.42
 
 
-def test_coverage_that_a_count_cannot_reach(cylinder):
+def test_coverage_that_a_count_cannot_reach():
     with pytest.warns(gm.GaussmapWarning, match="the coverage is"):
-        samples = gm.sample(cylinder, 20, coverage=0.05)
+        samples = gm.sample(CYLINDER, 20, coverage=0.05)
     assert len(samples) == 20
 
 
@@ -300,17 +295,17 @@ def test_failed_faces_are_left_out():
         ({"coverage": 1e-320}, "would have to be searched in more than"),  # its inverse overflows
     ],
 )
-def test_unusable_arguments(cylinder, arguments, match):
-    refused(match, gm.sample, cylinder, **arguments)
+def test_unusable_arguments(arguments, match):
+    refused(match, gm.sample, CYLINDER, **arguments)
 
 
-def test_samples_that_lack_what_is_needed(cylinder):
-    few = gm.sample(cylinder, 20, fields=("points", "normals"))
+def test_samples_that_lack_what_is_needed():
+    few = gm.sample(CYLINDER, 20, fields=("points", "normals"))
     refused("weights of a part need", few.weights, error=gm.errors.MissingFieldError)
     arrays = {"points": few.points, "normals": few.normals}
     for name in arrays:
         unknown = {**arrays, name: np.where(np.arange(20)[:, None] == 7, np.nan, arrays[name])}
-        bad = gm.Samples(**unknown, report=few.report, surface=cylinder)
+        bad = gm.Samples(**unknown, report=few.report, surface=CYLINDER)
         refused(f"{name} holds NaN", bad.normal_deviation)
         if name == "points":
             refused("points holds NaN", bad.coverage)
@@ -335,18 +330,17 @@ def test_samples_are_in_files(kind, name, dtype, tmp_path):
     same(samples, again)
 
 
-def test_other_methods(cylinder):
-    samples = gm.sample(cylinder, 40)
+def test_other_methods():
+    samples = gm.sample(CYLINDER, 40)
     few = samples[:5]
-    assert few.surface is cylinder
+    assert few.surface is CYLINDER
     assert len(gm.Samples.concatenate([few, few]).solid_index) == 10
     assert pickle.loads(pickle.dumps(samples)).surface.name == "cylinder"
-    refused("does not say how its edges go around", samples.mesh)
     refused("of CAD parts only", gm.sample, "torus", 10, cells=(8, 8), fields=("face_index",))
     assert gm.sample("torus", 10, cells=(8, 8)).face_index is None
-    chosen = gm.sample(cylinder, 10, fields=("points", "solid_index"))
+    chosen = gm.sample(CYLINDER, 10, fields=("points", "solid_index"))
     assert chosen.fields == ("points", "solid_index")
-    assert gm.sample(cylinder, 10, dtype=np.float32).points.dtype == np.float32
+    assert gm.sample(CYLINDER, 10, dtype=np.float32).points.dtype == np.float32
 
 
 def test_candidates_for_normals_are_no_more_than_asked(plates):
@@ -397,13 +391,13 @@ def test_candidates_for_missing_normals_are_dense_and_few(monkeypatch):
     assert gm.sample(KINDS, 3000).normal_deviation().normal_space < 2.3
 
 
-def test_a_part_has_some_candidates_for_each_sample(cylinder, monkeypatch):
+def test_a_part_has_some_candidates_for_each_sample(monkeypatch):
     """Squares of circumradius 0.4 r have an area of 0.32 r², a sample has r²/0.6: five, or more.
 
     With a quarter of them gaps are wider; four times as many take as much more time and memory.
     """
     numbers = noted(monkeypatch, PartSpace, "candidates", lambda _, found: len(found[0]))
-    gm.sample(cylinder, 1000, density="uniform")
+    gm.sample(CYLINDER, 1000, density="uniform")
     assert 4.0 < max(numbers) / 1000 < 10.0
 
 
@@ -444,9 +438,9 @@ def test_dense_nets_have_one_first_cell_for_each_span(points, cells):
 
 def test_borders_are_measured_in_groups(monkeypatch):
     """What is found does not depend on the size of the groups."""
-    whole = space_of(made.CYLINDER, 1).borders
+    whole = space_of(CYLINDER, 1).borders
     monkeypatch.setattr("gaussmap.tools.density.space.PLACES_AT_A_TIME", 1000)
-    some = space_of(made.CYLINDER, 1).borders
+    some = space_of(CYLINDER, 1).borders
     assert len(whole.rows) > 2000
     for name in ("pieces", "starts", "places", "rows", "limits"):
         np.testing.assert_array_equal(getattr(whole, name), getattr(some, name))
