@@ -1,6 +1,7 @@
 """Data sets for tests, written without processes."""
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -72,6 +73,13 @@ def waves(seed: int, wait: float = 0.0, log: Path | None = None) -> gm.Surface:
         return np.stack([u, v, np.sin(u + seed) * np.cos(v)], axis=-1)
 
     return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=f"waves {seed}")
+
+
+def wait_until(is_so: Callable[[], object], seconds: float = 60.0) -> None:
+    late = time.monotonic() + seconds
+    while not is_so():
+        assert time.monotonic() < late
+        time.sleep(0.05)
 
 
 def data_of(folder: Path) -> dict[str, Any]:

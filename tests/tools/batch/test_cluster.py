@@ -3,7 +3,6 @@
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,8 @@ import pytest
 from gaussmap.tools.batch import making
 from gaussmap.tools.batch.workers import Tally
 
-from .made import data_of, waves
+from ...refusals import refused
+from .made import data_of, wait_until, waves
 
 distributed = pytest.importorskip("distributed")
 PARTS = 40
@@ -101,23 +101,21 @@ def test_the_same_call_with_a_client(tmp_path, cluster):
 def test_a_scheduler_without_workers(tmp_path, monkeypatch):
     monkeypatch.setattr("gaussmap.tools.batch.cluster.PATIENCE", 3)
     found = Cluster(tmp_path, ())
-    late = time.monotonic() + 60
+    place = "127.0.0.1", int(found.address.rpartition(":")[2])
     try:
-        with socket.socket() as place:  # until the scheduler answers
-            while place.connect_ex(("127.0.0.1", int(found.address.rpartition(":")[2]))):
-                assert time.monotonic() < late
-                time.sleep(0.05)
-        with pytest.raises(gm.errors.FileError, match="has no workers"):
-            gm.sample_many(["torus"], 50, out=tmp_path / "set", scheduler=found.address)
+        with socket.socket() as own:
+            wait_until(lambda: own.connect_ex(place) == 0)  # the scheduler answers
+        refused_by("has no workers", tmp_path, found.address)
     finally:
         found.end()
 
 
+def refused_by(said: str, folder: Path, scheduler: Any, error: Any = gm.errors.FileError) -> None:
+    how: dict[str, Any] = {"out": folder / "set", "scheduler": scheduler}
+    refused(said, gm.sample_many, ["torus"], 50, **how, error=error)
+
+
 def test_bad_schedulers(tmp_path, monkeypatch):
     monkeypatch.setattr("gaussmap.tools.batch.cluster.PATIENCE", 1)
-    with pytest.raises(gm.errors.InputError, match="address of a scheduler"):
-        gm.sample_many(["torus"], 50, out=tmp_path / "set", scheduler=5)
-    with pytest.raises(gm.errors.FileError, match="no scheduler of Dask answers"):
-        gm.sample_many(
-            ["torus"], 50, out=tmp_path / "set", scheduler=f"tcp://127.0.0.1:{free_port()}"
-        )
+    refused_by("address of a scheduler", tmp_path, 5, gm.errors.InputError)
+    refused_by("no scheduler of Dask answers", tmp_path, f"tcp://127.0.0.1:{free_port()}")

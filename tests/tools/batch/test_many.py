@@ -59,8 +59,8 @@ def test_an_error_is_raised_with_the_number_of_the_surface():
     with pytest.raises(gm.errors.SurfaceError, match="no such surface") as caught:
         next(stream)
     assert caught.value.__notes__ == ["This is surface 1 (broken) of sample_many."]
-    with pytest.raises(gm.errors.UnknownNameError, match="on_error"):
-        many([TORUS], count=10, on_error="ignore")
+    error = gm.errors.UnknownNameError
+    refused("on_error", many, [TORUS], count=10, on_error="ignore", error=error)
 
 
 def test_other_errors_go_through():
@@ -80,6 +80,6 @@ def test_what_is_not_several_surfaces(surfaces):
 
 def test_many_of_nothing():
     assert many([], count=10) == []
-    for asked in ({"count": 0}, {"normals": []}, {"count": 5, "threads": 0}):
-        with pytest.raises(gm.errors.InputError):
-            many([], **asked)
+    wrong: list[dict[str, Any]] = [{"count": 0}, {"normals": []}, {"count": 5, "threads": 0}]
+    for asked in wrong:
+        refused("", many, [], **asked)

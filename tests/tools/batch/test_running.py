@@ -17,7 +17,7 @@ from gaussmap.tools.batch.inputs import inputs_of
 from gaussmap.tools.batch.making import limits_of
 
 from ...refusals import refused
-from .made import data_of, waves
+from .made import data_of, wait_until, waves
 
 ASKED: dict[str, Any] = {"density": "uniform", "cells": (8, 8), "dtype": "float32"}
 
@@ -153,33 +153,32 @@ class TestSlow:
 
 
 PROGRAM = """
-import sys, time
+import sys
 from pathlib import Path
-import numpy as np
 import gaussmap as gm
+from gaussmap.tests.tools.batch.made import waves
 
-def waves(seed, log):
-    def position(u, v):
-        if u.size > 17 * 17:
-            with open(log, "a") as file:
-                file.write(f"{seed}\\n")
-        time.sleep(0.01)
-        return np.stack([u, v, np.sin(u + seed) * np.cos(v)], axis=-1)
-    return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=f"waves {seed}")
-
-log, out, workers = sys.argv[1:4]
-gm.sample_many([waves(k, log) for k in range(40)], 50, out=out, workers=int(workers),
+out = sys.argv[1]
+gm.sample_many([waves(k, 0.01, Path(out + ".log")) for k in range(40)], 50, out=out, workers=2,
                density="uniform", cells=(8, 8), dtype="float32", progress=False)
 """
 
 
-def started(tmp_path: Path, out: Path, **more: str) -> subprocess.Popen[bytes]:
+def started(tmp_path: Path, name: str = "set", first: str = "", **more: str) -> Any:
+    """Start the program, after another line, that makes the data set of this name."""
     program = tmp_path / "program.py"
-    program.write_text(PROGRAM)
-    command = [sys.executable, str(program), str(tmp_path / "log"), str(out), "2"]
-    return subprocess.Popen(
-        command, stderr=subprocess.DEVNULL, start_new_session=True, env=os.environ | more
-    )
+    program.write_text(first + PROGRAM)
+    with open(tmp_path / "errors", "w") as errors:
+        command = [sys.executable, str(program), str(tmp_path / name)]
+        environment = os.environ | more
+        return subprocess.Popen(command, stderr=errors, start_new_session=True, env=environment)
+
+
+def goes_on(tmp_path: Path) -> None:
+    """Check that the run ends with the bytes of one that nothing disturbed."""
+    for name in ("set", "whole"):
+        assert started(tmp_path, name).wait(60) == 0
+    assert data_of(tmp_path / "set") == data_of(tmp_path / "whole")
 
 
 def left_in(group: int) -> dict[int, str]:
@@ -202,98 +201,67 @@ def read_by_others(folder: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
 def test_a_run_that_is_ended_again_and_again_ends_with_the_same_bytes(tmp_path, kind):
-    assert started(tmp_path, tmp_path / "whole").wait() == 0
-    (tmp_path / "log").unlink()
-    out = tmp_path / "set"
     pause = random.Random(int(kind))
     for _ in range(20):
-        process = started(tmp_path, out)
+        process = started(tmp_path)
         time.sleep(pause.uniform(0.8, 3.0))
         process.send_signal(kind)
-        start = time.monotonic()
         code = process.wait(60)
-        while left_in(process.pid):
-            assert time.monotonic() - start < 60.0
-            time.sleep(0.1)
+        wait_until(lambda group=process.pid: not left_in(group))
         if code == 0:
             break
-        if (out / "dataset.json").exists():
-            read_by_others(out)
-    assert started(tmp_path, out).wait() == 0
-    assert data_of(out) == data_of(tmp_path / "whole")
-    sampled = (tmp_path / "log").read_text().split()
+        if (tmp_path / "set" / "dataset.json").exists():
+            read_by_others(tmp_path / "set")
+    goes_on(tmp_path)
     # Each part is sampled once, but for those in work at the end of a run: one for each worker.
-    assert len(set(sampled)) == 40
+    assert len({*(tmp_path / "set.log").read_text().split()}) == 40
 
 
-def some_are_sampled(tmp_path: Path) -> None:
-    late = time.monotonic() + 60
-    while not (tmp_path / "log").exists():
-        assert time.monotonic() < late
-        time.sleep(0.05)
+def with_some_sampled(tmp_path: Path, **more: str) -> Any:
+    """Start a run, and return it when the first parts are sampled."""
+    process = started(tmp_path, **more)
+    wait_until((tmp_path / "set.log").exists)
+    return process
 
 
 @pytest.mark.slow
 def test_processes_that_are_killed_cost_nothing(tmp_path):
-    assert started(tmp_path, tmp_path / "whole").wait() == 0
-    (tmp_path / "log").unlink()
-    process = started(tmp_path, tmp_path / "set")
-    some_are_sampled(tmp_path)
+    process = with_some_sampled(tmp_path)
     for number, what in left_in(process.pid).items():
         if "--process-name" in what:
             os.kill(number, signal.SIGKILL)
     assert process.wait(60) == 0
-    assert data_of(tmp_path / "set") == data_of(tmp_path / "whole")
+    goes_on(tmp_path)
 
 
 @pytest.mark.slow
 def test_a_run_that_is_killed_with_all_its_processes_leaves_nothing_outside(tmp_path):
     (tmp_path / "temporary").mkdir()
     before = shared_memory()
-    process = started(tmp_path, tmp_path / "set", TMPDIR=str(tmp_path / "temporary"))
-    some_are_sampled(tmp_path)
+    process = with_some_sampled(tmp_path, TMPDIR=str(tmp_path / "temporary"))
     os.killpg(process.pid, signal.SIGKILL)
     process.wait(60)
     assert not any((tmp_path / "temporary").iterdir())
     left = shared_memory() - before
-    deadline = time.monotonic() + 120
     # Other tests that run meanwhile take away what they put there; what was leaked stays.
-    while left & shared_memory() and time.monotonic() < deadline:
-        time.sleep(1)
-    assert not left & shared_memory()
+    wait_until(lambda: not left & shared_memory(), 120.0)
 
 
 @pytest.mark.slow
 def test_two_interrupts_leave_nothing_that_runs(tmp_path):
-    process = started(tmp_path, tmp_path / "set")
-    some_are_sampled(tmp_path)
+    process = with_some_sampled(tmp_path)
     for _ in range(2):
         process.send_signal(signal.SIGINT)
         time.sleep(0.05)
     assert process.wait(20) != 0
-    late = time.monotonic() + 20
-    while left_in(process.pid):
-        assert time.monotonic() < late
-        time.sleep(0.05)
+    wait_until(lambda: not left_in(process.pid), 20.0)
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no limits")
 def test_a_full_disk_is_one_sentence_and_the_run_goes_on_later(tmp_path):
-    program = tmp_path / "program.py"
-    program.write_text(PROGRAM)
-    limited = tmp_path / "limited.py"
-    limited.write_text(
-        "import resource, runpy; resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))\n"
-        f"runpy.run_path({str(program)!r}, run_name='__main__')\n"
-    )
-    rest = [str(tmp_path / "log"), str(tmp_path / "set"), "2"]
-    found = subprocess.run(
-        [sys.executable, str(limited), *rest], stderr=subprocess.PIPE, text=True, timeout=120
-    )
-    assert found.returncode == 1
-    assert "cannot be written" in found.stderr.splitlines()[-1]
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (2500, 2500))"
+    assert started(tmp_path, first=limit).wait(120) == 1
+    assert "cannot be written" in (tmp_path / "errors").read_text().splitlines()[-1]
     assert gm.open_dataset(tmp_path / "set").manifest().num_rows < 40
-    assert started(tmp_path, tmp_path / "set").wait() == 0
-    assert started(tmp_path, tmp_path / "whole").wait() == 0
-    assert data_of(tmp_path / "set") == data_of(tmp_path / "whole")
+    goes_on(tmp_path)
