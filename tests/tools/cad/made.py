@@ -171,6 +171,18 @@ def is_on(surface, uv, points, normals, *, of_normals: float = 1e-13) -> None:
     np.testing.assert_allclose(normals_of(jets), normals.reshape(-1, 3), atol=of_normals)
 
 
+def area_of(surface, side: int = 400) -> float:
+    """Estimate the area inside the trim from side × side jittered parameters."""
+    (u0, u1), (v0, v1) = surface.domain
+    cells = np.stack(np.meshgrid(*[np.arange(side)] * 2, indexing="ij"), axis=-1).reshape(-1, 2)
+    parts = (cells + np.random.default_rng(3).random(cells.shape)) / side
+    uv = np.array([u0, v0]) + parts * (u1 - u0, v1 - v0)
+    uv = uv if surface.trim is None else uv[surface.trim.contains(uv)]
+    jets = surface.jets(*np.ascontiguousarray(uv.T))
+    lengths = np.linalg.norm(np.cross(jets[:, 1], jets[:, 2]), axis=1)
+    return float(lengths.sum()) * (u1 - u0) * (v1 - v0) / side**2
+
+
 def face_normals(mesh) -> np.ndarray:
     """Return the normals (k, 3) of triangles, whose lengths are their areas."""
     a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))

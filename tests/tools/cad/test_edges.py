@@ -16,20 +16,9 @@ from scipy.spatial import cKDTree
 
 from ...refusals import refused
 from ...shapes import same
-from .made import FAILED, TURN, cylinder_faces, face, is_on, part, placement
+from .made import CYLINDER, FAILED, face, is_on, part, placement
 
 SIZES = np.array([1.0, 2.0, 3.0])
-
-
-@pytest.fixture(scope="module")
-def cylinder() -> Part:
-    """Return a cylinder, of whose circles the file has nine points each."""
-    u = np.linspace(0.0, TURN, 9)
-    edges = [
-        EdgeRecord((0, k), np.stack([u, np.full(9, z), np.cos(u), np.sin(u)], axis=1))
-        for k, z in ((1, 0.0), (2, 2.0))
-    ]
-    return part(cylinder_faces(), "cylinder", edges=edges)
 
 
 def on_edges(samples: gm.Samples) -> gm.Samples:
@@ -92,11 +81,11 @@ def test_edges_are_as_dense_as_the_faces():
         assert samples.report.edge_samples == 8 + 12 * (np.ceil(1.0 / wanted) - 1)
 
 
-def test_circles_are_exact_though_the_file_has_few_points(cylinder):
-    samples = gm.sample(cylinder, 200, edges=True)
+def test_circles_are_exact_though_the_file_has_few_points():
+    samples = gm.sample(CYLINDER, 200, edges=True)
     edge = on_edges(samples)
     np.testing.assert_allclose(np.hypot(*edge.points[:, :2].T), 1.0, atol=1e-14)
-    both_ways(edge, cylinder)
+    both_ways(edge, CYLINDER)
     assert set(edge.face_index) == {0}
     for k, z in ((1, 0.0), (2, 2.0)):
         ring = edge[edge.other_face_index == k]
@@ -110,17 +99,17 @@ def test_circles_are_exact_though_the_file_has_few_points(cylinder):
         assert 0.5 < np.median(2.0 * near) / np.median(steps) < 2.0
 
 
-def test_weights_are_those_of_the_others(cylinder):
-    samples = gm.sample(cylinder, 100, edges=True)
+def test_weights_are_those_of_the_others():
+    samples = gm.sample(CYLINDER, 100, edges=True)
     weights = samples.weights()
     assert (weights[samples.kind == "edge"] == 0.0).all()
-    assert weights.sum() == pytest.approx(cylinder.area, rel=1e-12)
-    assert samples.coverage() <= gm.sample(cylinder, 100).coverage()
+    assert weights.sum() == pytest.approx(CYLINDER.area, rel=1e-12)
+    assert samples.coverage() <= gm.sample(CYLINDER, 100).coverage()
 
 
 @pytest.mark.parametrize("density", [0.5, 8.0])
-def test_powers_of_the_curvature(cylinder, density):
-    samples = gm.sample(cylinder, 100, density=density, edges=True)
+def test_powers_of_the_curvature(density):
+    samples = gm.sample(CYLINDER, 100, density=density, edges=True)
     assert 4 <= samples.report.edge_samples < 200
 
 
@@ -189,8 +178,8 @@ def test_corners_of_solids_that_touch_are_two():
     assert np.bincount(edge.solid_index[corners]).tolist() == [8, 8]
 
 
-def test_threads_give_the_same(cylinder):
-    same(*(gm.sample(cylinder, 80, threads=x, edges=True) for x in (1, 3)))
+def test_threads_give_the_same():
+    same(*(gm.sample(CYLINDER, 80, threads=x, edges=True) for x in (1, 3)))
 
 
 def test_some_fields(tmp_path):

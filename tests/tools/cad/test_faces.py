@@ -9,7 +9,7 @@ from gaussmap.tools.cad.faces import face_surface, own_parameters
 from gaussmap.tools.cad.records import Geometry, Net
 
 from ...refusals import refused
-from .made import TURN, net, normals_of, nurbs, rectangle
+from .made import TURN, area_of, net, normals_of, nurbs, rectangle
 
 OPEN, PERIODIC = ("open", "open"), ("periodic", "periodic")
 Z = np.array([0.36, 0.48, 0.8])
@@ -73,18 +73,6 @@ OFFSETS = {
 def places(domain, count=60):
     low, high = np.array(domain, dtype=float).T
     return low + (high - low) * (0.02 + 0.96 * np.random.default_rng(2).random((count, 2)))
-
-
-def area_of(surface, count=400):
-    """Return the area inside the trim, by the midpoint rule."""
-    (u0, u1), (v0, v1) = surface.domain
-    part = (np.arange(count) + 0.5) / count
-    u, v = np.meshgrid(u0 + (u1 - u0) * part, v0 + (v1 - v0) * part, indexing="ij")
-    jets = surface.jets(u.ravel(), v.ravel())
-    areas = np.linalg.norm(np.cross(jets[:, 1], jets[:, 2]), axis=1)
-    if surface.trim is not None:
-        areas = areas[surface.trim.contains(np.stack([u.ravel(), v.ravel()], axis=1))]
-    return float(areas.sum()) * (u1 - u0) * (v1 - v0) / count**2
 
 
 def central_differences(f, u, v, h):

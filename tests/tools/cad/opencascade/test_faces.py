@@ -17,6 +17,7 @@ from OCP.Geom import Geom_CylindricalSurface, Geom_Ellipse
 from OCP.Geom2d import Geom2d_Line
 from OCP.gp import gp_Ax1, gp_Ax3, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d
 
+from ..made import area_of
 from . import shapes
 from .shapes import axes, ball, box, cone, cut, cylinder, faces_of, states_of, torus
 
@@ -88,18 +89,6 @@ def distances(uv, record):
             t = np.clip((p - a) @ (b - a) / max((b - a) @ (b - a), 1e-300), 0.0, 1.0)
             nearest = np.minimum(nearest, np.hypot(*(p - a - t[:, None] * (b - a)).T))
     return nearest
-
-
-def area_of(surface, side):
-    """Estimate the area inside the trim from side × side jittered parameters."""
-    (u0, u1), (v0, v1) = surface.domain
-    cells = np.stack(np.meshgrid(*[np.arange(side)] * 2, indexing="ij"), axis=-1).reshape(-1, 2)
-    parts = (cells + np.random.default_rng(3).random(cells.shape)) / side
-    uv = np.array([u0, v0]) + parts * (u1 - u0, v1 - v0)
-    uv = uv if surface.trim is None else uv[surface.trim.contains(uv)]
-    jets = surface.jets(*np.ascontiguousarray(uv.T))
-    lengths = np.linalg.norm(np.cross(jets[:, 1], jets[:, 2]), axis=1)
-    return float(lengths.sum()) * (u1 - u0) * (v1 - v0) / side**2
 
 
 @pytest.mark.parametrize("name", SHAPES)
