@@ -171,6 +171,19 @@ def is_on(surface, uv, points, normals, *, of_normals: float = 1e-13) -> None:
     np.testing.assert_allclose(normals_of(jets), normals.reshape(-1, 3), atol=of_normals)
 
 
+def central_differences(f, u, v, h):
+    """Return the point and its derivatives by u, v, uu, uv, vv (k, 6, 3), of order 8 in h."""
+    first = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5])
+    first = np.concatenate([first, [0.0], -first[::-1]]) / h
+    second = np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5])
+    second = np.concatenate([second, [-205 / 72], second[::-1]]) / h**2
+    at = np.eye(9)[4]
+    steps = h * np.arange(-4, 5)
+    points = f(u[:, None, None] + steps[:, None], v[:, None, None] + steps)
+    weights = [(at, at), (first, at), (at, first), (second, at), (first, first), (at, second)]
+    return np.stack([np.einsum("i,j,kijx->kx", *x, points) for x in weights], axis=1)
+
+
 def area_of(surface, side: int = 400) -> float:
     """Estimate the area inside the trim from side × side jittered parameters."""
     (u0, u1), (v0, v1) = surface.domain

@@ -9,7 +9,7 @@ from gaussmap.tools.cad.faces import face_surface, own_parameters
 from gaussmap.tools.cad.records import Geometry, Net
 
 from ...refusals import refused
-from .made import TURN, area_of, net, normals_of, nurbs, rectangle
+from .made import TURN, area_of, central_differences, net, normals_of, nurbs, rectangle
 
 OPEN, PERIODIC = ("open", "open"), ("periodic", "periodic")
 Z = np.array([0.36, 0.48, 0.8])
@@ -73,19 +73,6 @@ OFFSETS = {
 def places(domain, count=60):
     low, high = np.array(domain, dtype=float).T
     return low + (high - low) * (0.02 + 0.96 * np.random.default_rng(2).random((count, 2)))
-
-
-def central_differences(f, u, v, h):
-    """Return the point and its derivatives by u, v, uu, uv, vv (k, 6, 3), of order 8 in h."""
-    first = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5])
-    first = np.concatenate([first, [0.0], -first[::-1]]) / h
-    second = np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5])
-    second = np.concatenate([second, [-205 / 72], second[::-1]]) / h**2
-    at = np.eye(9)[4]
-    steps = h * np.arange(-4, 5)
-    points = f(u[:, None, None] + steps[:, None], v[:, None, None] + steps)
-    weights = [(at, at), (first, at), (at, first), (second, at), (first, first), (at, second)]
-    return np.stack([np.einsum("i,j,kijx->kx", *x, points) for x in weights], axis=1)
 
 
 @pytest.mark.parametrize("case", [*GEOMETRIES.values(), *OFFSETS.values()])

@@ -1,5 +1,6 @@
 """Samples on graded grids."""
 
+from functools import partial
 from typing import Any
 
 import gaussmap as gm
@@ -9,6 +10,7 @@ from gaussmap.tools.density.lines import Axis
 from gaussmap.tools.density.steps import Forms, equal_steps, steps_for_count
 
 from ...products import covering
+from ...refusals import refused
 
 CELLS = (16, 16)
 
@@ -97,8 +99,8 @@ def test_fields_are_there_if_asked_or_used():
     assert none.column is not None
     assert (none.column == -1).all()
     for density in ("balanced", "uniform"):
-        with pytest.raises(gm.errors.InputError, match="row is a field of samples on a grid only"):
-            gm.sample("torus", 300, fields=("points", "row"), density=density, cells=CELLS)
+        how = asked | {"fields": ("points", "row"), "density": density}
+        refused("row is a field of samples on a grid only", gm.sample, "torus", 300, **how)
 
 
 def test_files_keep_rows_and_columns(tmp_path):
@@ -156,75 +158,59 @@ def test_a_trimmed_grid_keeps_the_count_and_the_trim():
     assert (samples.row >= 0).sum() > 500
 
 
-def test_samples_between_the_lines_of_a_grid_do_not_make_it_another_density():
-    samples = gm.sample("torus", 27, density="aligned", cells=CELLS)
-    assert 0 < np.count_nonzero(samples.row < 0) < len(samples)
-    assert samples.report.density == "aligned"
-
-
 def test_only_aligned_samples_are_on_a_grid():
     """Parameters of a torus are lines of curvature: there a grid has smaller angles."""
+    few = gm.sample("torus", 27, density="aligned", cells=CELLS)
+    assert 0 < np.count_nonzero(few.row < 0) < len(few)
     aligned, balanced = (gm.sample("torus", 1000, density=x) for x in ("aligned", "balanced"))
-    assert aligned.report.density == "aligned"
+    assert aligned.report.density == few.report.density == "aligned"
     assert "on a grid that follows the curvature" in aligned.summary()
     assert balanced.report.density is balanced.row is balanced.column is None
     assert set(balanced.kind) == {"normal", "filling"}
     assert aligned.normal_deviation().space < 0.8 * balanced.normal_deviation().space
 
 
-def test_lines_keep_away_from_jumps_of_curvature():
-    """A plane, a quarter of a cylinder and a plane: both joints are breaks."""
-
-    def profile(u: Any, v: Any) -> Any:
-        angle = np.clip(u - 1.0, 0.0, 1.5)
-        x = np.minimum(u, 1.0) + np.sin(angle) + np.maximum(u - 2.5, 0.0) * np.cos(1.5)
-        z = 1.0 - np.cos(angle) + np.maximum(u - 2.5, 0.0) * np.sin(1.5)
-        return np.stack([x, v, z], axis=-1)
-
-    surface = gm.Surface.from_callable(profile, ((0.0, 3.5), (0.0, 1.0)))
-    samples = gm.sample(surface, 400, density="aligned", cells=(32, 8))
-    columns = np.unique(samples.uv[samples.column >= 0, 0].round(9))
-    for joint in (1.0, 2.5):
-        low, high = columns[columns < joint], columns[columns > joint]
-        steps = np.diff(columns)
-        assert joint - low[-1] == pytest.approx((low[-1] - low[-2]) / 2.0, rel=0.05)
-        assert high[0] - joint == pytest.approx((high[1] - high[0]) / 2.0, rel=0.05)
-        assert steps.max() > 1.5 * steps.min()
+def profile(u: Any, v: Any) -> Any:
+    """Return points of a plane, a quarter of a cylinder and a plane."""
+    angle, after = np.clip(u - 1.0, 0.0, 1.5), np.maximum(u - 2.5, 0.0)
+    x = np.minimum(u, 1.0) + np.sin(angle) + after * np.cos(1.5)
+    return np.stack([x, v, 1.0 - np.cos(angle) + after * np.sin(1.5)], axis=-1)
 
 
-def is_half_a_step_away(surface: gm.Surface, u: float, cells: tuple[int, int]) -> bool:
-    """Say whether the lines of a grid on both sides of u are half a step away from it."""
+def revolved(u: Any, v: Any, jump: float) -> Any:
+    """Return points of two arcs of a profile, of curvature 1 and 1 − jump."""
+    bend = 1.0 - jump
+    first, second = np.minimum(u, 1.0) - 1.0, bend * np.maximum(u - 1.0, 0.0)
+    r = 2.0 + np.cos(first) + (np.cos(second) - 1.0) / bend
+    z = np.sin(first) + np.sin(second) / bend
+    return np.stack([r * np.cos(v), r * np.sin(v), z], axis=-1)
+
+
+def folded(u: Any, v: Any, share: float) -> Any:
+    """Return points of two sides of u = 0 that curve to opposite sides for v < share only."""
+    x = np.clip(10.0 * (v - share), 0.0, 1.0)
+    opposite = 1.0 - x**3 * (10.0 - 15.0 * x + 6.0 * x * x)
+    height = opposite * u * np.abs(u) + (1.0 - opposite) * u * u
+    return np.stack([u, v, 4.0 * v * v + 0.1 * height], axis=-1)
+
+
+@pytest.mark.parametrize(
+    ("position", "ends", "cells", "joints", "is_joint"),
+    [
+        (profile, (0.0, 3.5), (32, 8), (1.0, 2.5), True),
+        (partial(revolved, jump=0.07), (0.0, 2.2), (64, 8), (1.0,), False),
+        (partial(revolved, jump=0.15), (0.0, 2.2), (64, 8), (1.0,), True),
+        # A line is a joint if the sign of the curvature changes along most of it.
+        (partial(folded, share=0.55), (-1.0, 1.3), (64, 64), (0.0,), False),
+        (partial(folded, share=0.8), (-1.0, 1.3), (64, 64), (0.0,), True),
+    ],
+)
+def test_lines_are_half_a_step_from_jumps_of_curvature(position, ends, cells, joints, is_joint):
+    surface = gm.Surface.from_callable(position, (ends, (0.0, 1.0)))
     samples = gm.sample(surface, 400, density="aligned", cells=cells)
     columns = np.unique(samples.uv[samples.column >= 0, 0].round(9))
-    low, high = columns[columns < u], columns[columns > u]
-    near = np.array([u - low[-1], high[0] - u])
-    return bool((abs(near / [low[-1] - low[-2], high[1] - high[0]] - 0.5) < 0.03).all())
-
-
-@pytest.mark.parametrize(("jump", "is_joint"), [(0.07, False), (0.15, True)])
-def test_curvature_that_changes_little_makes_no_joint(jump: float, is_joint: bool):
-    """Two arcs of a profile, of curvature 1 and 1 − jump."""
-
-    def revolved(u: Any, v: Any) -> Any:
-        bend = 1.0 - jump
-        first, second = np.minimum(u, 1.0) - 1.0, bend * np.maximum(u - 1.0, 0.0)
-        r = 2.0 + np.cos(first) + (np.cos(second) - 1.0) / bend
-        z = np.sin(first) + np.sin(second) / bend
-        return np.stack([r * np.cos(v), r * np.sin(v), z], axis=-1)
-
-    surface = gm.Surface.from_callable(revolved, ((0.0, 2.2), (0.0, 1.0)))
-    assert is_half_a_step_away(surface, 1.0, (64, 8)) == is_joint
-
-
-@pytest.mark.parametrize(("share", "is_joint"), [(0.55, False), (0.8, True)])
-def test_a_line_is_a_joint_if_the_sign_changes_along_most_of_it(share: float, is_joint: bool):
-    """The two sides of u = 0 curve to opposite sides for v < share, to the same side beyond."""
-
-    def folded(u: Any, v: Any) -> Any:
-        x = np.clip(10.0 * (v - share), 0.0, 1.0)
-        opposite = 1.0 - x**3 * (10.0 - 15.0 * x + 6.0 * x * x)
-        height = opposite * u * np.abs(u) + (1.0 - opposite) * u * u
-        return np.stack([u, v, 4.0 * v * v + 0.1 * height], axis=-1)
-
-    surface = gm.Surface.from_callable(folded, ((-1.0, 1.3), (0.0, 1.0)))
-    assert is_half_a_step_away(surface, 0.0, (64, 64)) == is_joint
+    for u in joints:
+        low, high = columns[columns < u], columns[columns > u]
+        near = np.array([u - low[-1], high[0] - u])
+        half = abs(near / [low[-1] - low[-2], high[1] - high[0]] - 0.5) < 0.03
+        assert half.all() == is_joint

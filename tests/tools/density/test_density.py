@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import Any, cast
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -20,9 +20,6 @@ DENTS = gm.Surface.from_callable(
     lambda u, v: np.stack([u, v, 0.2 * np.exp(-8 * ((u + 0.5) ** 2 + v * v))], axis=-1),
     ((-1.0, 1.0), (-1.0, 1.0)),
 )
-
-
-SQUARE = ((0.0, 1.0), (0.0, 1.0))
 
 
 # --- how many -------------------------------------------------------------------------------------
@@ -76,14 +73,6 @@ def test_samples_on_a_spline_have_its_curvatures(density):
     largest = (H**2 - K).max() + (H**2).max()
     np.testing.assert_allclose(samples.gaussian_curvature, K, rtol=0, atol=1e-9 * largest)
     np.testing.assert_allclose(samples.mean_curvature, H, rtol=0, atol=1e-9 * largest**0.5)
-
-
-def test_what_has_no_area_is_refused():
-    line = gm.Surface.from_callable(lambda u, v: np.stack([u, 0 * u, 0 * u], axis=-1), SQUARE)
-    amounts = [{"count": 10}, {"coverage": 0.1}, {"angle": 20.0}, {"normals": [[0, 0, 1]]}]
-    for asked in cast("list[dict[str, Any]]", amounts):
-        with pytest.raises(gm.errors.SurfaceError, match="has no area"):
-            gm.sample(line, cells=(3, 3), density="balanced", **asked)
 
 
 # --- which ones -----------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from gaussmap.tools.meshes.border import border_lines
 from gaussmap.tools.meshes.places import wrapped
 
 from ...shapes import circle
+from ..cad.made import area_of
 
 pytestmark = pytest.mark.compiled
 
@@ -45,19 +46,6 @@ PARTS = {
 }
 
 
-def area(spline, count=600):
-    """Return the area inside the trim, by the midpoint rule."""
-    (u0, u1), (v0, v1) = spline.domain
-    parts = (np.arange(count) + 0.5) / count
-    u, v = (x.ravel() for x in np.meshgrid(u0 + (u1 - u0) * parts, v0 + (v1 - v0) * parts))
-    inside = spline.trim.contains(np.stack([u, v], axis=1))
-    u, v, step = u[inside], v[inside], 1e-5
-    along = spline.evaluate(u + step, v) - spline.evaluate(u - step, v)
-    across = spline.evaluate(u, v + step) - spline.evaluate(u, v - step)
-    sizes = np.linalg.norm(np.cross(along, across), axis=1) / (4 * step * step)
-    return sizes.sum() * (u1 - u0) * (v1 - v0) / count**2
-
-
 @pytest.mark.parametrize("name", PARTS)
 @pytest.mark.quick_for("grid", "cap", "band", "across a mirrored seam")
 def test_a_mesh_ends_at_the_border(name):
@@ -84,7 +72,7 @@ def test_a_mesh_ends_at_the_border(name):
     inside = (spline.trim.contains(places) & ~beyond).reshape(len(ends), -1)
     known = name == "grid"  # whose own evaluation of places on edges is not exact
     assert np.mean(inside.any(axis=1) & ~inside.all(axis=1)) >= (0.9 if known else 1.0)
-    assert samples.weights().sum() == pytest.approx(area(spline), rel=6e-3)
+    assert samples.weights().sum() == pytest.approx(area_of(surface), rel=6e-3)
 
 
 def test_weights_of_a_disc():
