@@ -11,13 +11,9 @@ trimesh = pytest.importorskip("trimesh")
 pytestmark = pytest.mark.compiled
 
 
-@pytest.fixture(scope="module")
-def bracket() -> gm.Samples:
-    return gm.sample(gm.read_part(f"{gm.__path__[0]}/docs/gallery/bracket.npz"), 300)
-
-
 @pytest.mark.slow
-def test_walls_of_holes_block_beyond_their_diameter(bracket):
+def test_walls_of_holes_block_beyond_their_diameter():
+    bracket = gm.sample(gm.read_part(f"{gm.__path__[0]}/docs/gallery/bracket.npz"), 300)
     faces = [bracket.surface.faces[k] for k in bracket.face_index]
     holes = np.array([x.kind == "cylinder" and x.dimensions["radius"] == 3.5 for x in faces])
     assert holes.sum() >= 8
@@ -27,22 +23,6 @@ def test_walls_of_holes_block_beyond_their_diameter(bracket):
     centres = holes.offset(1.0)
     assert centres.unobstructed(5.9, by=mesh).all()
     assert not centres.unobstructed(6.1).any()  # by the mesh of the part
-
-
-@pytest.mark.slow
-def test_what_is_free_of_the_bracket(bracket):
-    free, faces = bracket.unobstructed(1000.0), bracket.surface.faces
-    low, high = bracket.surface.bounds
-    outer = ((bracket.points - low < 1e-9) & (bracket.normals < -0.999)) | (
-        (high - bracket.points < 1e-9) & (bracket.normals > 0.999)
-    )
-    assert outer.any()
-    assert free[outer.any(axis=1)].all()
-    hollow = np.array([faces[k].dimensions.get("hollow", False) for k in bracket.face_index])
-    bores = np.array([faces[k].kind == "cylinder" for k in bracket.face_index]) & hollow
-    assert not free[bores & (np.abs(bracket.normals[:, 0]) < 1e-9)].all()
-    mesh = gm.sample(bracket.surface, 4000).mesh()
-    np.testing.assert_array_equal(bracket.unobstructed(1000.0, by=mesh), free)
 
 
 def test_a_clamp(parts):

@@ -4,7 +4,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 pytest.importorskip("OCP")
@@ -62,41 +61,3 @@ def read(tmp_path):
 def part_with(write, read):
     """Make the part of a shape."""
     return lambda shape, unit=None: part_of(read(write(shape, "part.brep"), unit))
-
-
-def points_of(geometry, uv: np.ndarray) -> np.ndarray:
-    """Return the points of a surface by the formulas that `saving` gives."""
-    from scipy.interpolate import BSpline, NdBSpline
-
-    (u, v), n = uv.T, geometry.numbers
-    across = v[:, None]
-    if geometry.net is not None:
-        net = geometry.net
-        weights = np.ones(net.points.shape[:-1]) if net.weights is None else net.weights
-        lifted = np.concatenate([net.points * weights[..., None], weights[..., None]], axis=-1)
-        if geometry.kind == "nurbs":
-            found = NdBSpline(net.knots, lifted, net.degrees)(uv)
-        else:
-            spline = BSpline(net.knots[0], lifted, net.degrees[0])
-            found = spline(v if geometry.kind == "revolution" else u)
-        curve = found[:, :3] / found[:, 3:]
-        if geometry.kind == "nurbs":
-            return curve
-        if geometry.kind == "extrusion":
-            return curve + across * n
-        origin, axis = n[:3], n[3:]
-        arm, c, s = curve - origin, np.cos(u)[:, None], np.sin(u)[:, None]
-        along = (1.0 - c) * (arm @ axis)[:, None] * axis
-        return origin + c * arm + s * np.cross(axis, arm) + along
-    o, x, y, z = n[:12].reshape(4, 3)
-    out = np.outer(np.cos(u), x) + np.outer(np.sin(u), y)
-    if geometry.kind == "plane":
-        return o + np.outer(u, x) + np.outer(v, y)
-    if geometry.kind == "cylinder":
-        return o + n[12] * out + across * z
-    if geometry.kind == "cone":
-        return o + (n[12] + across * np.sin(n[13])) * out + across * np.cos(n[13]) * z
-    if geometry.kind == "sphere":
-        return o + n[12] * (np.cos(across) * out + np.sin(across) * z)
-    assert geometry.kind == "torus"
-    return o + (n[12] + n[13] * np.cos(across)) * out + n[13] * np.sin(across) * z

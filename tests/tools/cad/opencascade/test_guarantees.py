@@ -114,6 +114,8 @@ def spindle():
 
 
 SHAPES = {
+    # borders that are no simple curves
+    "holed ball": lambda: cut(ball(), cylinder(0.4, 3.0, (-0.1, -0.15, -1.5), (0.2, 0.1, 1.0))),
     # faces that end in tips
     "tapering fillet": lambda: rounded(box(3.0, 2.0, 1.0), 0.3, 1e-3, most=1),
     "chamfer": chamfered,
@@ -236,7 +238,12 @@ def check(path: Path, folder: Path, angles, coverages) -> None:
 
 @pytest.mark.parametrize(
     ("name", "angle", "coverage"),
-    [("sliver of a ball", 5.0, 0.05), ("lune", 5.0, 0.02), ("ring", 5.0, 0.05)],
+    [
+        ("sliver of a ball", 5.0, 0.05),
+        ("lune", 5.0, 0.02),
+        ("ring", 5.0, 0.05),
+        ("holed ball", 5.0, 0.05),
+    ],
 )
 def test_guarantees_hold(name, angle, coverage, tmp_path):
     check(written(SHAPES[name](), tmp_path / "part.brep"), tmp_path, [angle], [coverage])

@@ -3,7 +3,6 @@
 # pyright: reportMissingImports=false
 
 import gaussmap as gm
-import numpy as np
 import pytest
 
 pytest.importorskip("OCP")
@@ -21,12 +20,8 @@ from .shapes import (
     box,
     cut,
     cylinder,
-    evaluated,
-    faces_of,
-    forward,
     lie_on_faces,
     loft,
-    on_triangles,
     rounded,
     torus,
 )
@@ -73,19 +68,6 @@ def test_normals_point_out_of_the_solid(made):
         for side, state in ((5e-7, OUT), (-5e-7, IN)):  # some are as near to edges as that
             classifier.Perform(gp_Pnt(*(point + side * normal).tolist()), 1e-9)
             assert classifier.State() == state
-
-
-@pytest.mark.parametrize("asked", [0.5, 0.2])
-def test_coverage_is_that_of_places_of_open_cascade(made, asked):
-    shape, part = made
-    random, faces = np.random.default_rng(5), map(forward, faces_of(shape))
-    places = np.concatenate([
-        evaluated(x, on_triangles(x, 0.05, random, turn=0.3, count=1000))[0] for x in faces
-    ])  # fmt: skip
-    samples = gm.sample(part, coverage=asked)
-    gaps = np.linalg.norm(places[:, None] - samples.points, axis=2).min(axis=1)
-    said = samples.report.coverage
-    assert 0.7 * asked < gaps.max() <= said <= asked
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,7 @@ from gaussmap.tools.cad.opencascade.surfaces import geometry_of, periods_of
 from OCP import Geom
 from OCP.GeomConvert import GeomConvert
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt, gp_Vec
-from scipy.interpolate import BPoly
 
-from .conftest import points_of
 from .shapes import xyz
 
 try:
@@ -162,28 +160,4 @@ def test_surfaces_are_those_of_open_cascade(name):
     assert (errors(jets, wanted) <= tolerances).all()
     assert geometry.kind == name.split(",")[0]
     if name in SURFACES:
-        points = wanted[:, 0]
-        assert np.abs(points_of(geometry, uv) - points).max() < 1e-14 * 8 * np.abs(points).max()
         assert periods_of(surface) == pytest.approx(*periods)
-
-
-def test_curves_that_are_no_nurbs_have_exact_derivatives():
-    surface, domain, _ = SURFACES["extrusion, ellipse"]
-    net = geometry_of(surface, domain).net
-    degree, ends = net.degrees[0], np.unique(net.knots[0])
-    spans = degree * np.arange(len(ends) - 1)
-    pieces = np.stack([net.points[spans + k] for k in range(degree + 1)])
-    curve = BPoly(pieces, ends)
-    t = np.linspace(ends[0], ends[-1], 101)
-    for order, tolerance in ((1, 1e-12), (2, 1e-10)):
-        truth = np.array([xyz(ELLIPSE.DN(x, order)) for x in t])
-        assert np.abs(curve.derivative(order)(t) - truth).max() < tolerance
-
-
-def test_an_offset_has_its_basis():
-    surface, domain, _ = SURFACES["revolution, circle"]
-    trimmed = Geom.Geom_RectangularTrimmedSurface(surface, 1.0, 2.0, 1.0, 2.0)
-    geometry = geometry_of(Geom.Geom_OffsetSurface(trimmed, 0.25), domain)
-    assert geometry.kind == "offset"
-    assert geometry.numbers.tolist() == [0.25]
-    assert geometry.basis.kind == "revolution"
