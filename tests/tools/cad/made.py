@@ -171,6 +171,33 @@ def is_on(surface, uv, points, normals, *, of_normals: float = 1e-13) -> None:
     np.testing.assert_allclose(normals_of(jets), normals.reshape(-1, 3), atol=of_normals)
 
 
+def has_its_dimensions(alone: Part) -> None:
+    """Check points and normals of the only face of a part against its dimensions."""
+    (known,) = alone.faces
+    kind, samples, known = known.kind, gm.sample(alone, 50), known.dimensions
+    points, normals = samples.points, samples.normals
+    if kind == "plane":
+        assert np.allclose(normals, known["normal"], atol=1e-14)
+        assert np.allclose((points - known["point"]) @ known["normal"], 0.0, atol=1e-14)
+        return
+    (centre,) = (known[x] for x in ("point", "apex", "centre") if x in known)
+    across = points - centre
+    height = across @ known.get("axis", np.zeros(3))
+    radial = across - height[:, None] * known.get("axis", np.zeros(3))
+    distance = np.linalg.norm(radial, axis=1)
+    if kind == "cone":
+        assert np.allclose(distance, height * np.tan(np.radians(known["half_angle"])), atol=1e-13)
+        assert (height > 0.0).all()
+    elif kind == "torus":
+        radial *= (1.0 - known["major_radius"] / distance)[:, None]
+        radial += height[:, None] * known["axis"]
+        assert np.allclose(np.linalg.norm(radial, axis=1), known["minor_radius"], atol=1e-14)
+    else:
+        assert np.allclose(distance, known["radius"], atol=1e-14)
+    inward = np.einsum("ij,ij->i", radial, normals) < 0.0
+    assert inward.all() if known["hollow"] else not inward.any()
+
+
 def central_differences(f, u, v, h):
     """Return the point and its derivatives by u, v, uu, uv, vv (k, 6, 3), of order 8 in h."""
     first = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5])

@@ -12,20 +12,6 @@ from .made import AXES, FAILED, TURN, circle, face, part, placement
 
 
 @pytest.fixture(scope="module")
-def tube() -> Part:
-    """Return a tube of radii 1 and 2 and height 3, far from the origin; all loops turn left."""
-    ends, more = (-2.0, 2.0), {"solid_index": 0}
-    bottom, top = (placement((50.0, 70.0, z - 30.0)) for z in (0.0, 3.0))
-    flat = {"area": 3 * np.pi, "loops": [circle(2.0), circle(1.0)], **more}
-    return part([
-        face("cylinder", 1.0, v=(0.0, 3.0), place=bottom, reversed=True, **more),
-        face("cylinder", 2.0, v=(0.0, 3.0), place=bottom, **more),
-        face("plane", u=ends, v=ends, place=bottom, reversed=True, **flat),
-        face("plane", u=ends, v=ends, place=top, **flat),
-    ])  # fmt: skip
-
-
-@pytest.fixture(scope="module")
 def slanted() -> Part:
     """Return a cylinder of radius 1 that is cut off at z = 2 + x/2, seen in another frame."""
     x, _, z = AXES
@@ -41,10 +27,6 @@ def slanted() -> Part:
         face("plane", u=ends, v=ends, place=place, area=area, loops=[circle()], reversed=True),
         face("plane", u=(-slope, slope), v=ends, place=top, area=slope * area, loops=[ellipse]),
     ])  # fmt: skip
-
-
-def test_volume_of_a_tube(tube):
-    assert tube.volume == pytest.approx(9 * np.pi, rel=1e-12)
 
 
 def test_volume_below_a_curved_border(slanted):

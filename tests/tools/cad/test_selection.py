@@ -12,7 +12,17 @@ from gaussmap.tools.cad.examples import all_kinds, box
 
 from ...products import covering
 from ...refusals import refused
-from .made import AXES, FAILED, TURN, UNIT, cylinder_faces, face, part, rectangle
+from .made import (
+    AXES,
+    FAILED,
+    TURN,
+    UNIT,
+    cylinder_faces,
+    face,
+    has_its_dimensions,
+    part,
+    rectangle,
+)
 
 
 def indices(part) -> list[int]:
@@ -172,28 +182,7 @@ def test_where_no_face_is_found_the_kinds_are_listed(failing):
 def test_dimensions_are_those_of_points_and_normals(kind, more, u, v, is_reversed, handed):
     place = [5.0, -2.0, 1.0, *AXES[0], *(handed * AXES[1]), *AXES[2]]
     alone = part([face(kind, *more, u=u, v=v, place=place, reversed=is_reversed)], oriented=False)
-    samples, known = gm.sample(alone, 50), alone.faces[0].dimensions
-    points, normals = samples.points, samples.normals
-    if kind == "plane":
-        assert np.allclose(normals, known["normal"], atol=1e-14)
-        assert np.allclose((points - known["point"]) @ known["normal"], 0.0, atol=1e-14)
-        return
-    (centre,) = (known[x] for x in ("point", "apex", "centre") if x in known)
-    across = points - centre
-    height = across @ known.get("axis", np.zeros(3))
-    radial = across - height[:, None] * known.get("axis", np.zeros(3))
-    distance = np.linalg.norm(radial, axis=1)
-    if kind == "cone":
-        assert np.allclose(distance, height * np.tan(np.radians(known["half_angle"])), atol=1e-13)
-        assert (height > 0.0).all()
-    elif kind == "torus":
-        radial *= (1.0 - known["major_radius"] / distance)[:, None]
-        radial += height[:, None] * known["axis"]
-        assert np.allclose(np.linalg.norm(radial, axis=1), known["minor_radius"], atol=1e-14)
-    else:
-        assert np.allclose(distance, known["radius"], atol=1e-14)
-    inward = np.einsum("ij,ij->i", radial, normals) < 0.0
-    assert inward.all() if known["hollow"] else not inward.any()
+    has_its_dimensions(alone)
 
 
 def test_other_kinds_have_none():

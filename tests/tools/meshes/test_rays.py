@@ -1,5 +1,7 @@
 """Which samples a probe reaches along their normals, without running into obstacles."""
 
+from typing import Any
+
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ pytestmark = pytest.mark.compiled
 
 @pytest.mark.slow
 def test_walls_of_holes_block_beyond_their_diameter():
-    bracket = gm.sample(gm.read_part(f"{gm.__path__[0]}/docs/gallery/bracket.npz"), 300)
+    bracket: Any = gm.sample(gm.read_part(f"{gm.__path__[0]}/docs/gallery/bracket.npz"), 300)
     faces = [bracket.surface.faces[k] for k in bracket.face_index]
     holes = np.array([x.kind == "cylinder" and x.dimensions["radius"] == 3.5 for x in faces])
     assert holes.sum() >= 8

@@ -27,6 +27,8 @@ X = np.linspace(0.0, 1.0, 21)
 HEIGHTS = np.where(
     (np.abs(X[:, None] - 0.5) < 0.11) & (np.abs(X - 0.6) < 0.11), np.nan, 0.1 * np.sin(5 * X)
 )
+LEFT = np.array([(0.1, 0.1), (0.5, 0.1), (0.5, 0.9), (0.1, 0.9)])
+RIGHT = LEFT + np.array([0.4, 0.0])
 # Surfaces with the Euler characteristics of their parts.
 PARTS = {
     "hole": (PLANE.trimmed(shapely.box(0, 0, 1, 1).difference(shapely.box(0.3, 0.3, 0.7, 0.6))), 0),
@@ -42,12 +44,20 @@ PARTS = {
         gm.surfaces.moebius_band().trimmed(within=lambda u, v: v * np.cos(u / 2) > -0.3),
         0,
     ),
+    # In one loop each: no border between them. And a predicate.
+    "rectangles that touch": (
+        PLANE.trimmed([LEFT, RIGHT]).trimmed(within=lambda u, v: v < 0.5),
+        1,
+    ),
+    "border through nodes": (TORUS.trimmed(within=lambda u, v: np.cos(u) + np.cos(v) > 0.0), 1),
     "grid": (gm.Surface.from_grid(HEIGHTS, spacing=(0.05, 0.05)), 0),
 }
 
 
 @pytest.mark.parametrize("name", PARTS)
-@pytest.mark.quick_for("grid", "cap", "band", "across a mirrored seam")
+@pytest.mark.quick_for(
+    "rectangles that touch", "border through nodes", "grid", "cap", "band", "across a mirrored seam"
+)
 def test_a_mesh_ends_at_the_border(name):
     surface, characteristic = PARTS[name]
     spline = gm.fit(surface, None if name == "grid" else (16, 16))
@@ -85,29 +95,11 @@ def test_weights_of_a_disc():
     assert weights @ square == pytest.approx(np.pi * 0.4**4 / 2.0, rel=1e-2)
 
 
-def test_a_border_through_nodes_of_the_grid_is_whole():
-    surface = TORUS.trimmed(within=lambda u, v: np.cos(u) + np.cos(v) > 0.0)
-    assert len(border_lines(gm.fit(surface, (128, 128)))) == 1
-
-
 def test_positions_around_another_one():
     """A shift along v, which is mirrored, comes before one along u."""
     bottle = gm.Surface.from_callable(plane, PLANE.domain, (True, "mirrored"))
     found = wrapped(np.array([[0.9, 0.95]]), bottle.boundary, np.array([[0.1, 0.05]]))
     np.testing.assert_allclose(found, [[0.1, -0.05]], atol=1e-15)
-
-
-def test_borders_are_those_of_all_conditions():
-    # Two rectangles that touch, in one loop each: no border between them. And a predicate.
-    left = np.array([(0.1, 0.1), (0.5, 0.1), (0.5, 0.9), (0.1, 0.9)])
-    surface = PLANE.trimmed([left, left + np.array([0.4, 0.0])]).trimmed(
-        within=lambda u, v: v < 0.5
-    )
-    lines = border_lines(gm.fit(surface, (8, 8)))
-    lengths = [np.linalg.norm(np.diff(x, axis=0), axis=1).sum() for x in lines]
-    assert sum(lengths) == pytest.approx(2 * (0.8 + 0.4), rel=1e-3)
-    points = np.concatenate(lines)
-    assert not ((np.abs(points[:, 0] - 0.5) < 1e-6) & (np.abs(points[:, 1] - 0.3) < 0.15)).any()
 
 
 def test_a_loop_around_the_whole_torus_has_no_border():

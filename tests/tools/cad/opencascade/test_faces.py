@@ -110,20 +110,6 @@ def test_trims_and_areas_are_those_of_open_cascade(name):
         assert area_of(surface, side) == pytest.approx(record.area, rel=OF_AREA)
 
 
-def test_normals_point_out_of_a_drilled_sphere():
-    for _, record, surface in with_surfaces(SHAPES["sphere"]()):
-        uv = own_parameters(surface, places(record.domain, 50), is_reversed=record.reversed)
-        jets = surface.jets(*np.ascontiguousarray(uv.T))
-        normals = np.cross(jets[:, 1], jets[:, 2])
-        outward = 1.0 if record.geometry.kind == "sphere" else -1.0
-        arms = jets[:, 0]
-        if outward < 0.0:  # of the axis of the hole, to which its normals point
-            z = record.geometry.numbers[9:12]
-            arms = arms - record.geometry.numbers[:3]
-            arms = arms - (arms @ z)[:, None] * z
-        assert ((normals * arms).sum(axis=1) * outward > 0.0).all()
-
-
 def test_the_seam_of_a_whole_sphere_is_no_border():
     ((_, record, surface),) = with_surfaces(ball(2.0))
     assert record.domain == ((0.0, 2 * math.pi), (-math.pi / 2, math.pi / 2))
