@@ -6,7 +6,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.cad.faces import face_surface, own_parameters
-from gaussmap.tools.cad.records import Geometry, Net
+from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
+from gaussmap.tools.cad.units import with_unit
 
 from ...refusals import refused
 from .made import TURN, area_of, central_differences, net, normals_of, nurbs, rectangle
@@ -85,6 +86,27 @@ def test_derivatives_are_those_of_the_points(case):
     numerical = central_differences(surface.evaluate, u, v, 2.0**-9)
     # Rounding 8 ε/h² = 5e-10.
     assert np.abs(jets - numerical).max() < 2e-8 * max(np.abs(jets).max(), 1.0)
+
+
+# The factors of u and v if lengths are doubled.
+DOUBLED = {"plane": (2, 2), "cylinder": (1, 2), "cone": (1, 2), "extrusion": (1, 2)}
+
+
+@pytest.mark.parametrize(
+    ("name", "case"), [*GEOMETRIES.items(), *((f"offset, {x}", y) for x, y in OFFSETS.items())]
+)
+def test_faces_in_another_unit(name, case):
+    """Lengths are multiplied, and angles are not; offsets have the parameters of their bases."""
+    geometry, domain = case
+    one = FaceRecord(geometry, domain, (6.0, 3.0), [rectangle(*domain)], area=5.0)
+    other, factors = with_unit(one, 2.0), np.array(DOUBLED.get(name.split(", ")[-1], (1, 1)))
+    np.testing.assert_array_equal(other.loops[0], one.loops[0] * factors)
+    np.testing.assert_array_equal(other.domain, domain * factors[:, None])
+    assert (tuple(other.periods), other.area) == (tuple(factors * (6.0, 3.0)), 20.0)
+    uv = places(domain)
+    found = face_surface(other.geometry, other.domain).evaluate(*(uv * factors).T)
+    expected = 2.0 * face_surface(geometry, domain).evaluate(*uv.T)
+    np.testing.assert_allclose(found, expected, atol=1e-13)
 
 
 @pytest.mark.parametrize("name", [*GEOMETRIES])

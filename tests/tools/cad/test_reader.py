@@ -67,11 +67,6 @@ def test_arguments_are_checked(arguments, tmp_path):
     refused(next(iter(arguments)), gm.read_cad, tmp_path / "part.step", **arguments)
 
 
-def test_without_open_cascade_the_extra_is_named(path, monkeypatch):
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    refused(r"gaussmap\[cad\]", gm.read_cad, path, error=gm.errors.MissingExtraError)
-
-
 def runs(monkeypatch, code: str) -> None:
     """Let the process that reads run other code."""
     command = [sys.executable, "-c", code]

@@ -6,7 +6,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.density.lines import Axis
 from gaussmap.tools.density.steps import Forms, equal_steps, steps_for_count
 
 from ...products import covering
@@ -59,14 +58,6 @@ def test_a_step_spans_half_of_the_domain_at_most(curvature: float):
 
 def test_too_small_a_distance_is_made_larger():
     assert steps_for_count(torus_forms(), 100.0, 1e-3).count <= 110.0
-
-
-@pytest.mark.kernels
-def test_lines_are_half_a_step_from_breaks():
-    axis = Axis.of(10.0, 20, np.array([4.0]))
-    lines = axis.lines(np.ones(len(axis.widths)), np.array([4, 3]))
-    np.testing.assert_allclose(lines, [0.5, 1.5, 2.5, 3.5, 5.0, 7.0, 9.0])
-    np.testing.assert_allclose(axis.lengths(np.full(len(axis.widths), 2.0)), [2.0, 3.0])
 
 
 @covering(count=[1, 2, 7, 500], on=["surface", "spline"])

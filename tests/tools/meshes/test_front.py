@@ -5,16 +5,21 @@ from gaussmap.tools.meshes import front
 from gaussmap.tools.meshes.front import Front, in_front
 
 
+def depths_at(triangles: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return the depth (T, k) of each triangle at places (k, 2), −∞ beside it."""
+    found = np.full((len(triangles), len(places)), -np.inf)
+    for row, (a, b, c) in zip(found, triangles, strict=True):
+        sides = np.stack([b - a, c - a], axis=1)
+        s, t = np.linalg.solve(sides[:2], (places - a[:2]).T)
+        inside = (s >= 0) & (t >= 0) & (s + t <= 1)
+        row[inside] = (a[2] + s * sides[2, 0] + t * sides[2, 1])[inside]
+    return found
+
+
 def test_front_is_the_nearest_triangle() -> None:
     rng = np.random.default_rng(0)
     triangles, places = rng.random((200, 3, 3)), rng.random((300, 2))
-    expected = np.full(len(places), -np.inf)
-    for a, b, c in triangles:
-        matrix = np.stack([b[:2] - a[:2], c[:2] - a[:2]], axis=1)
-        s, t = np.linalg.solve(matrix, (places - a[:2]).T)
-        inside = (s >= 0) & (t >= 0) & (s + t <= 1)
-        depth = a[2] + s * (b[2] - a[2]) + t * (c[2] - a[2])
-        expected = np.where(inside, np.maximum(expected, depth), expected)
+    expected = depths_at(triangles, places).max(axis=0)
     np.testing.assert_allclose(Front.of(triangles).at(places), expected, rtol=1e-6)
 
 
@@ -28,22 +33,13 @@ def test_the_front_triangles_of_pixels_are_found(monkeypatch):
     monkeypatch.setattr(front, "AT_ONCE", 7)  # some of the triangles, in turn
     monkeypatch.setattr(front, "PIXELS", 50)
     triangles = np.random.default_rng(4).random((300, 3, 3))
-    small = (triangles - triangles.mean(axis=1, keepdims=True)) * 0.4 + triangles.mean(
-        axis=1, keepdims=True
-    )
+    centres = triangles.mean(axis=1, keepdims=True)
+    small = (triangles - centres) * 0.4 + centres
     low, size = small[..., :2].min(axis=(0, 1)), np.ptp(small[..., :2], axis=(0, 1)).max()
     middles = (np.arange(front.PIXELS + 1) + 0.5) * size / front.PIXELS
     pixels = low + np.stack(np.meshgrid(middles, middles), axis=2).reshape(-1, 2)
-    depths = Front.of(small).at(pixels)
-    a, b, c = np.moveaxis(small, 1, 0)
-    seen = np.zeros(300, dtype=bool)
-    for k in range(300):
-        weights = np.linalg.solve(
-            np.stack([(b - a)[k, :2], (c - a)[k, :2]], axis=1), (pixels - a[k, :2]).T
-        )
-        inside = (weights > 0).all(axis=0) & (weights.sum(axis=0) < 1)
-        depth = a[k, 2] + (b - a)[k, 2] * weights[0] + (c - a)[k, 2] * weights[1]
-        seen[k] = (inside & (depth >= depths - 1e-9)).any()
+    depths = depths_at(small, pixels)
+    seen = (np.isfinite(depths) & (depths >= depths.max(axis=0) - 1e-9)).any(axis=1)
     found = in_front(small)
     np.testing.assert_array_equal(found, seen)
     assert 0 < found.sum() < 300

@@ -11,6 +11,8 @@ from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.meshes.links import neighbours
 from gaussmap.tools.meshes.meshing import triangulated
 from gaussmap.tools.meshes.triangulated import Triangulated, flip_edges
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from ...products import covering
 from ...refusals import refused
@@ -78,28 +80,21 @@ def mesh_of(name: str, prefer: Literal["shape", "normals"] = "shape", **options:
 def components(edges: np.ndarray) -> int:
     """Return how many closed lines edges make: each vertex is in two of them."""
     assert (np.unique(edges, return_counts=True)[1] == 2).all()
-    label = {int(x): int(x) for x in np.unique(edges)}
-    for _ in edges:
-        for a, b in edges.tolist():
-            label[a] = label[b] = min(label[a], label[b])
-    return len(set(label.values()))
+    return connected(*edges.T)
+
+
+def connected(one: np.ndarray, other: np.ndarray) -> int:
+    """Return the number of components of a graph with edges between the nodes of two arrays."""
+    names, nodes = np.unique([one, other], return_inverse=True)
+    graph = coo_array((np.ones(len(one)), tuple(nodes.reshape(2, -1))), (len(names), len(names)))
+    return connected_components(graph, directed=False)[0]
 
 
 def is_one_fan_at_each_vertex(mesh: gm.Mesh) -> bool:
     """Say whether the edges opposite to each vertex make one line, open or closed."""
-    around: dict[int, list[tuple[int, int]]] = {k: [] for k in range(len(mesh.vertices))}
-    for a, b, c in mesh.triangles.tolist():
-        for x, edge in ((a, (b, c)), (b, (c, a)), (c, (a, b))):
-            around[x].append(edge)
-    for link in around.values():
-        reached, waiting = set(), [link[0][0]]
-        while waiting:
-            x = waiting.pop()
-            reached.add(x)
-            waiting += [y for edge in link if x in edge for y in edge if y not in reached]
-        if reached != {x for edge in link for x in edge}:
-            return False
-    return True
+    vertex, *opposite = mesh.triangles[:, [[0, 1, 2], [1, 2, 0], [2, 0, 1]]].reshape(-1, 3).T
+    count = len(mesh.vertices)
+    return connected(*(count * vertex + x for x in opposite)) == count
 
 
 def check_topology(mesh: gm.Mesh, characteristic: int, borders: int) -> None:
