@@ -167,7 +167,7 @@ def normals_of(jets: np.ndarray) -> np.ndarray:
 def is_on(surface, uv, points, normals, *, of_normals: float = 1e-13) -> None:
     """Check that points and normals are those of a surface at its parameters."""
     jets = surface.jets(*uv.reshape(-1, 2).T.copy())
-    np.testing.assert_allclose(jets[:, 0], points.reshape(-1, 3), atol=1e-13)
+    np.testing.assert_allclose(jets[:, 0], points.reshape(-1, 3), atol=1e-15)
     np.testing.assert_allclose(normals_of(jets), normals.reshape(-1, 3), atol=of_normals)
 
 

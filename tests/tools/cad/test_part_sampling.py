@@ -59,41 +59,34 @@ def test_samples_are_on_their_faces(plates, density):
     samples = gm.sample(plates, 400, density=density)
     points, normals, faces = samples.points, samples.normals, samples.face_index
     assert len(samples) == 400
-    on_plate, on_ball, on_ring, on_tiny = (faces == k for k in range(4))
-    assert np.abs(points[on_plate, 2]).max() == 0.0
+    on_plate, on_ball = faces == 0, faces == 1
     assert np.hypot(*(points[on_plate, :2] - 0.5).T).min() > 0.3 * np.cos(np.pi / 720) - 1e-6
     from_centre = points[on_ball] - [0.5, 0.5, 1.0]
-    np.testing.assert_allclose(np.linalg.norm(from_centre, axis=1), 0.25, atol=1e-14)
     np.testing.assert_allclose(normals[on_ball], -from_centre / 0.25, atol=1e-13)  # reversed
     np.testing.assert_allclose(samples.mean_curvature[on_ball], -4.0, rtol=1e-12)
     np.testing.assert_allclose(samples.gaussian_curvature[on_ball], 16.0, rtol=1e-12)
-    x, y, z = (points[on_ring] - [0.5, 0.5, 2.0]).T
-    np.testing.assert_allclose(np.hypot(np.hypot(x, y) - 0.4, z), 0.1, atol=1e-14)
-    assert on_tiny.sum() >= 1
     assert samples.solid_index.tolist() == np.array([-1, 0, 1, -1])[faces].tolist()
     assert samples.report.oriented is False
     for k, known in enumerate(plates.faces):
         here = faces == k
-        evaluated = known.surface.evaluate(*samples.uv[here].T)
-        np.testing.assert_allclose(evaluated, points[here], atol=1e-15)
+        assert here.any()
+        made.is_on(known.surface, samples.uv[here], points[here], normals[here])
 
 
-@pytest.mark.parametrize("coverage", [0.5, 0.2])
-@pytest.mark.parametrize("density", ["balanced", "uniform"])
-def test_coverage_holds_for_the_part(coverage, density):
-    samples = gm.sample(CYLINDER, coverage=coverage, density=density)
+@pytest.mark.parametrize(
+    ("asked", "most"),
+    [({"coverage": x}, 2.2) for x in (0.5, 0.2)]
+    + [({"coverage": x, "density": "uniform"}, 1.6) for x in (0.5, 0.2)]
+    + [({"coverage": 0.42, "count": 200}, np.inf)],
+)
+def test_coverage_holds_for_the_part(asked, most):
+    samples, coverage = gm.sample(CYLINDER, **asked), asked["coverage"]
+    assert len(samples) == asked.get("count", len(samples))
     assert farthest(samples, points_on_cylinder()) <= samples.report.coverage <= coverage
     assert samples.coverage() <= samples.report.coverage
     # Squares of half the diagonal cover as much by twice as many samples; edges cost some, and so
     # does the curvature of the side.
-    most = 1.6 if density == "uniform" else 2.2
     assert len(samples) < most * CYLINDER.area / (2 * coverage**2) + 30
-
-
-def test_count_and_coverage():
-    samples = gm.sample(CYLINDER, 200, coverage=0.42)
-    assert len(samples) == 200
-    assert farthest(samples, points_on_cylinder()) <= samples.report.coverage <= 0.42
 
 
 def test_coverage_that_a_count_cannot_reach():
