@@ -108,27 +108,26 @@ def test_no_faces(tmp_path):
     assert (len(empty), empty.faces, empty.solids, empty.area) == (0, (), (), 0.0)
 
 
-def test_numbers_that_are_not_finite_fail_one_face(everything, tmp_path):
-    everything.arrays["net_points"][0, 0] = np.nan  # of face 6
-    everything.arrays["net_points"][-1, 3] = np.inf  # of the basis of the basis of face 7
-    everything.arrays["numbers"][0] = np.nan
-    failed = again(everything, tmp_path).failed
-    assert [x.index for x in failed] == [0, 6, 7, 10]
-    assert failed[0].reason == "its numbers are not finite"
+NOT_FINITE = "its numbers are not finite"
 
 
 @pytest.mark.parametrize(
-    ("name", "change", "reason"),
+    ("name", "place", "number", "face", "reason"),
     [
-        ("area", lambda x: 1e308, "its area is out of range"),
-        ("area", lambda x: 1e-320, "its area is out of range"),
-        ("loop_points", lambda x: x + 1e9, "its boundary is outside of its domain"),
+        ("area", 0, 1e308, 0, "its area is out of range"),
+        ("area", 0, 1e-320, 0, "its area is out of range"),
+        ("loop_points", 0, 1e9, 0, "its boundary is outside of its domain"),
+        ("numbers", 0, np.nan, 0, NOT_FINITE),
+        ("net_points", (0, 0), np.nan, 6, NOT_FINITE),
+        ("net_points", (-1, 3), np.inf, 7, NOT_FINITE),  # of the basis of the basis
     ],
 )
-def test_numbers_that_cannot_be_fail_one_face(name, change, reason, everything, tmp_path):
-    everything.arrays[name][0] = change(everything.arrays[name][0])
+def test_numbers_that_cannot_be_fail_one_face(
+    name, place, number, face, reason, everything, tmp_path
+):
+    everything.arrays[name][place] = number
     failed = again(everything, tmp_path).failed
-    assert [x.index for x in failed] == [0, 10]
+    assert [x.index for x in failed] == [face, 10]
     assert failed[0].reason == reason
     assert failed[0].part.area < 27.0
 

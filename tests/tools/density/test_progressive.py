@@ -7,6 +7,7 @@ from scipy.spatial import KDTree
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import same
 
 
 @pytest.fixture(scope="module")
@@ -43,12 +44,9 @@ def test_every_beginning_is_spread_as_the_whole(waves: gm.Spline, density: str) 
 def test_the_samples_are_the_same_in_another_order() -> None:
     samples = gm.sample(gm.surfaces.torus(), count=1_000)
     ordered = samples.progressive()
-    back = np.lexsort((ordered.normal_index, ordered.arrays()["patch_index"], ordered.points[:, 0]))
-    again = np.lexsort(
-        (samples.normal_index, samples.arrays()["patch_index"], samples.points[:, 0])
-    )
-    for name in samples.fields:
-        np.testing.assert_array_equal(getattr(ordered, name)[back], getattr(samples, name)[again])
+    order = KDTree(samples.points).query(ordered.points)[1]
+    assert np.sort(order).tolist() == list(range(1_000))
+    same(samples[order], ordered)
     np.testing.assert_array_equal(samples.progressive().points, ordered.points)
     assert ordered.report is samples.report
     assert ordered.spline is samples.spline

@@ -17,7 +17,6 @@ from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
 from OCP.BRepGProp import BRepGProp
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
-from OCP.BRepOffsetAPI import BRepOffsetAPI_ThruSections
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Pnt2d, gp_Vec
 from OCP.GProp import GProp_GProps
 from OCP.IntTools import IntTools_FClass2d
@@ -128,19 +127,6 @@ def rounded(shape, *radii, most=None):
 def cut_ball():
     """Return a ball from which a cylinder off its axis is cut: curves within a tolerance."""
     return cut(ball(2.0), cylinder(0.8, 10.0, (0.7, 0.2, -5.0), (0.0, 0.1, 1.0)))
-
-
-def loft():
-    """Return a solid over a square: its sides turn, and end in a point."""
-    made = BRepOffsetAPI_ThruSections(True, False)
-    for radius, height, turn in ((1.0, 0.0, 0.0), (0.8, 0.7, 0.5)):
-        polygon = BRepBuilderAPI.BRepBuilderAPI_MakePolygon()
-        for angle in turn + np.pi / 2 * np.arange(4):
-            polygon.Add(gp_Pnt(radius * np.cos(angle), radius * np.sin(angle), height))
-        polygon.Close()
-        made.AddWire(polygon.Wire())
-    made.AddVertex(vertex(0.0, 0.0, 2.0))
-    return made.Shape()
 
 
 def pierced(shape):

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 
 pytest.importorskip("OCP")
 
@@ -81,14 +82,8 @@ def with_surfaces(shape):
 def distances(uv, record):
     """Return the distances (k,) of places from the loops of a face, relative to its box."""
     low, high = np.array(record.domain).T
-    p = (uv - low) / (high - low)
-    nearest = np.full(len(uv), np.inf)
-    for loop in record.loops:
-        ends = (loop - low) / (high - low)
-        for a, b in zip(ends, np.roll(ends, -1, axis=0), strict=True):
-            t = np.clip((p - a) @ (b - a) / max((b - a) @ (b - a), 1e-300), 0.0, 1.0)
-            nearest = np.minimum(nearest, np.hypot(*(p - a - t[:, None] * (b - a)).T))
-    return nearest
+    loops = [shapely.LinearRing((x - low) / (high - low)) for x in record.loops]
+    return shapely.distance(shapely.union_all(loops), shapely.points((uv - low) / (high - low)))
 
 
 @pytest.mark.parametrize("name", SHAPES)

@@ -16,12 +16,12 @@ from OCP.TopAbs import TopAbs_State
 
 from .conftest import written
 from .shapes import (
+    as_nurbs,
     ball,
     box,
     cut,
     cylinder,
     lie_on_faces,
-    loft,
     rounded,
     torus,
 )
@@ -73,7 +73,7 @@ def test_normals_point_out_of_the_solid(made):
 @pytest.mark.parametrize(
     ("shape", "flat"),
     [(torus(2.0, 0.7), 0), (cut(ball(2.0), box(4.0, 4.0, 4.0, at=(-2.0, -2.0, -3.0))), 1),
-     (loft(), 1), (cylinder(1.0, 2.0), 3)],
+     (as_nurbs(torus(2.0, 0.7)), 0), (cylinder(1.0, 2.0), 3)],
 )  # fmt: skip
 def test_the_developable_share_is_that_of_planes_and_cylinders(shape, flat, part_with):
     part = part_with(shape)
