@@ -13,7 +13,7 @@ from gaussmap.tools.cad.edges import between_two, edges_of, sides_at
 from gaussmap.tools.cad.faces import own_parameters
 from gaussmap.tools.cad.results import space_of
 
-from .shapes import SOLIDS, box, compound, cylinder, lie_on_faces, loose_faces
+from .shapes import SOLIDS, box, compound, lie_on_faces, loose_faces
 
 # Curves of intersection that Open CASCADE computed are borders within its default tolerance.
 COMPUTED = ("cut ball", "as NURBS", "cone and cylinder", "crossed cylinders")
@@ -83,19 +83,6 @@ def test_wires_close_and_lie_on_their_faces(name, part_with):
             assert area == pytest.approx(wanted, rel=0.05)  # the same way around
     degenerate = arrays["edge_vertices"][arrays["edge_degenerate"]]
     assert (degenerate[:, 0] == degenerate[:, 1]).all()
-
-
-def test_units_scale_vertices_and_parameters(part_with):
-    shape = cylinder(10.0, 20.0)
-    in_mm, in_cm = part_with(shape), part_with(shape, "cm")
-    assert np.allclose(in_cm.arrays["vertices"], in_mm.arrays["vertices"] / 10.0, rtol=1e-15)
-    for part, factor in ((in_mm, 1.0), (in_cm, 10.0)):
-        counts = np.diff(part.arrays["side_point_starts"])
-        side = [x.kind for x in part.faces].index("cylinder")
-        on_side = np.repeat(part.arrays["side_faces"], counts) == side
-        largest = np.abs(part.arrays["side_points"][on_side]).max(axis=0)
-        assert largest[1] * factor == pytest.approx(20.0, rel=1e-14)
-        assert largest[2] == pytest.approx(2 * np.pi, rel=1e-14)
 
 
 def test_loose_faces_are_sewn_and_borders_are_no_edges(part_with):
