@@ -61,28 +61,23 @@ def test_samples_of_a_part(dataset, part):
     assert (found.report.fit_distance, found.report.samples) == (0.25, made.COUNTS[part])
 
 
+INPUT_ERROR, UNKNOWN = gm.errors.InputError, gm.errors.UnknownNameError
+
+
 @pytest.mark.parametrize(
-    ("part", "error", "text"),
+    ("method", "asked", "error", "text"),
     [
-        (made.BROKEN, gm.errors.UnknownNameError, "'broken'.*has failed: no such file"),
-        (13, gm.errors.UnknownNameError, "no part 13"),
-        (10**6, gm.errors.UnknownNameError, "no part"),
-        (-1, gm.errors.InputError, "at least 0"),
-        ("part 1", gm.errors.InputError, "whole number"),
+        ("samples", made.BROKEN, UNKNOWN, "'broken'.*has failed: no such file"),
+        ("samples", 13, UNKNOWN, "no part 13"),
+        ("samples", 10**6, UNKNOWN, "no part"),
+        ("samples", -1, INPUT_ERROR, "at least 0"),
+        ("samples", "part 1", INPUT_ERROR, "whole number"),
+        *(("manifest", x, INPUT_ERROR, "") for x in ("part", [], ["part", "part"], 3)),
+        ("manifest", ["parts"], UNKNOWN, ""),
     ],
 )
-def test_parts_that_are_not_there(dataset, part, error, text):
-    refused(text, dataset.samples, part, error=error)
-
-
-@pytest.mark.parametrize(
-    ("columns", "error"),
-    [("part", gm.errors.InputError), ([], gm.errors.InputError),
-     (["part", "part"], gm.errors.InputError), (["parts"], gm.errors.UnknownNameError),
-     (3, gm.errors.InputError)],
-)  # fmt: skip
-def test_columns_that_are_not_there(dataset, columns, error):
-    refused("", dataset.manifest, columns, error=error)
+def test_what_is_not_there(dataset, method, asked, error, text):
+    refused(text, getattr(dataset, method), asked, error=error)
 
 
 def test_a_sequence(dataset):

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 import gaussmap as gm
-import numpy as np
 import pytest
 from gaussmap.tools.batch.folder import (
     MANIFEST,
@@ -41,18 +40,6 @@ def contents(folder: Path) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize("step", [31, pytest.param(1, marks=pytest.mark.slow)])
-def test_a_part_that_is_cut_anywhere_is_done_again(tmp_path: Path, step: int) -> None:
-    made.write(tmp_path)
-    path, known = part_path(tmp_path, 3), read_settings(tmp_path)
-    data = path.read_bytes()
-    for size in range(0, len(data), step):
-        path.write_bytes(data[:size])
-        assert row_of(tmp_path, known, 3) is None, size
-    path.write_bytes(data)
-    assert row_of(tmp_path, known, 3) == made.row_of(3, made.COUNTS[3])
-
-
 @pytest.mark.parametrize(
     "row",
     [
@@ -72,19 +59,6 @@ def test_names_that_are_no_text(tmp_path: Path) -> None:
     with opened(tmp_path, KNOWN):
         write_part(tmp_path, KNOWN, ManifestRow(0, "part\udcff.step", "\0\n"))
     assert gm.open_dataset(tmp_path).manifest()["name"].to_pylist() == ["part\\udcff.step"]
-
-
-def test_fields_that_some_parts_lack(tmp_path: Path) -> None:
-    known = made.settings(fields=("points", "normals", "patch_index"))
-    vectors: dict[str, Any] = dict.fromkeys(("points", "normals"), np.ones((5, 3)))
-    with opened(tmp_path, known):
-        for part in (0, 1):
-            more: dict[str, Any] = {"patch_index": np.arange(5)} if part else {}
-            some = gm.Samples(**vectors, **more, report=made.samples_of(0, 5).report)
-            write_part(tmp_path, known, ManifestRow(part, "a", "b", samples=5), some)
-    data = gm.open_dataset(tmp_path)
-    assert data[0].fields == ("points", "normals")
-    np.testing.assert_array_equal(data[1].patch_index, np.arange(5))
 
 
 def test_a_full_disk_leaves_what_is_done(tmp_path: Path) -> None:

@@ -415,17 +415,6 @@ def test_a_file_cannot_hold_a_function(tmp_path):
     refused("'kind'", gm.read_part, tmp_path / "part.npz", error=gm.errors.FileError)
 
 
-def test_prescribed_normals_and_reach():
-    part = gm.Part([SURFACES.sphere(), moved(SURFACES.torus(), (5.0, 0.0, 0.0))])
-    normal = np.array([[0.36, 0.48, 0.8]])
-    found = gm.GaussMap(part).points(normal)
-    np.testing.assert_array_equal(np.array(found.face_index), [0, 1, 1])
-    assert found.report.proved == 1
-    np.testing.assert_allclose(found.points[0], normal[0], atol=1e-12)
-    tilted = gm.sample(part, 100, reach=((0, 0, 1), 30.0))
-    assert tilted.normals[:, 2].min() >= np.cos(np.radians(30.0)) - 1e-12
-
-
 @pytest.mark.parametrize("shift", [0.0, 1.0])
 def test_a_side_that_is_a_point_is_one_at_the_origin_too(shift):
     """It is one up to rounding, sin(π) ≠ 0, which is not less where coordinates are small."""

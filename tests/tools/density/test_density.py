@@ -113,20 +113,14 @@ def test_covers_alone_answer_no_normals(density):
 
 @pytest.mark.parametrize(
     "asked",
-    [{"count": 700}]
-    + [
-        pytest.param(asked, marks=pytest.mark.slow)
-        for asked in (
-            {"angle": 9.0},
-            {"count": 900, "coverage": 0.12},
-            {"count": 700, "density": "uniform"},
-            {"count": 700, "density": "aligned"},
-            {"count": 500, "density": 0.7},
-            {"coverage": 0.1},
-            {"normals": gm.icosphere(5), "density": "balanced"},
-        )
+    [
+        {"count": 700}, {"angle": 9.0}, {"count": 900, "coverage": 0.12},
+        {"count": 700, "density": "uniform"}, {"count": 700, "density": "aligned"},
+        {"count": 500, "density": 0.7}, {"coverage": 0.1},
+        {"normals": gm.icosphere(5), "density": "balanced"},
     ],
-)
+)  # fmt: skip
+@pytest.mark.quick_for("asked0")
 def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
     monkeypatch.setattr(space, "CELLS_AT_A_TIME", 100)
     monkeypatch.setattr(candidates, "PART", 1 << 9)

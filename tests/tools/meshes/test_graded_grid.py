@@ -70,34 +70,30 @@ class TestTopology:
     @FEW_UNCOMPILED
     @pytest.mark.parametrize("prefer", PREFER)
     def test_a_grid_makes_the_whole_surface(self, name, prefer):
-        samples = on_grid(name, (14, 11))
-        mesh = samples.mesh(prefer=prefer)
-        check(mesh, *surfaces[name][1:])
-        used = mesh.sample_index[mesh.sample_index >= 0]
-        # Of three in a line, as on a cone, one may be left out.
-        assert len(np.unique(used)) == len(used) >= len(samples) - (name == "cone")
-        np.testing.assert_array_equal(mesh.vertices[mesh.sample_index >= 0], samples.points[used])
+        """Alone, and with samples between its lines.
 
-    @FEW_UNCOMPILED
-    @pytest.mark.parametrize("prefer", PREFER)
-    def test_samples_between_the_lines(self, name, prefer):
-        """At random, on lines and sides, next to sides, at corners, poles and other samples."""
-        grid = on_grid(name, (14, 11)).uv
+        These are at random, on lines and sides, next to sides, at corners, poles and other samples.
+        """
+        alone = on_grid(name, (14, 11))
         low, high = np.array(surfaces[name][0]().domain).T
-        unit = (grid - low) / (high - low)
-        rng = np.random.default_rng(3)
+        unit = (alone.uv - low) / (high - low)
         special = [
             [0.0, 0.3], [1.0, 0.62], [0.41, 0.0], [0.77, 1.0], [1e-4, 0.5], [0.21, 1.0 - 1e-4],
             [0.0, 0.0], [unit[5, 0], 0.37], [0.13, unit[5, 1]], unit[40], unit[41],
         ]  # fmt: skip
-        between = np.concatenate([rng.uniform(0.0, 1.0, (20, 2)), special])
-        samples = on_grid(name, (14, 11), between)
-        mesh = samples.mesh(prefer=prefer)
-        check(mesh, *surfaces[name][1:])
-        used = set(mesh.sample_index.tolist()) - {-1}
-        # Of three in a line, as on a cone, one may be left out.
-        assert len(set(range(len(grid))) - used - {40, 41}) <= (name == "cone")
-        assert prefer == "shape" or len(used) >= len(samples) - 6
+        between = np.random.default_rng(3).uniform(0.0, 1.0, (20, 2))
+        both = on_grid(name, (14, 11), np.concatenate([between, special]))
+        for samples, twice in ((alone, set()), (both, {40, 41})):
+            mesh = samples.mesh(prefer=prefer)
+            check(mesh, *surfaces[name][1:])
+            own = mesh.sample_index >= 0
+            used = mesh.sample_index[own]
+            assert len(np.unique(used)) == len(used)
+            np.testing.assert_array_equal(mesh.vertices[own], samples.points[used])
+            # Of three in a line, as on a cone, one may be left out.
+            left_out = set(range(len(alone))) - {*used.tolist()} - twice
+            assert len(left_out) <= (name == "cone")
+            assert prefer == "shape" or len(used) >= len(samples) - 6
 
     def test_it_covers_the_parameters_once(self):
         rng = np.random.default_rng(5)

@@ -90,21 +90,19 @@ def connected(one: np.ndarray, other: np.ndarray) -> int:
     return connected_components(graph, directed=False)[0]
 
 
-def is_one_fan_at_each_vertex(mesh: gm.Mesh) -> bool:
-    """Say whether the edges opposite to each vertex make one line, open or closed."""
-    vertex, *opposite = mesh.triangles[:, [[0, 1, 2], [1, 2, 0], [2, 0, 1]]].reshape(-1, 3).T
-    count = len(mesh.vertices)
-    return connected(*(count * vertex + x for x in opposite)) == count
-
-
 def check_topology(mesh: gm.Mesh, characteristic: int, borders: int) -> None:
-    """Check that a mesh is a surface, with this Euler characteristic and so many borders."""
+    """Check that a mesh is a surface, with this Euler characteristic and so many borders.
+
+    The edges opposite to each vertex make one line, open or closed.
+    """
     edges = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     times = np.unique(edges, axis=0, return_counts=True)[1]
     assert set(times.tolist()) == ({1, 2} if borders else {2})
     assert mesh.euler_characteristic == characteristic
     assert (components(mesh.boundary_edges) if borders else 0) == borders
-    assert is_one_fan_at_each_vertex(mesh)
+    vertex, *opposite = mesh.triangles[:, [[0, 1, 2], [1, 2, 0], [2, 0, 1]]].reshape(-1, 3).T
+    count = len(mesh.vertices)
+    assert connected(*(count * vertex + x for x in opposite)) == count
 
 
 def on_spline(spline: gm.Spline, uv: np.ndarray, **more: Any) -> gm.Samples:
