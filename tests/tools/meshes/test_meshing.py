@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import klein, moved
+from ...shapes import TURN, klein, klein_bottle, moved
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 compiled = pytest.mark.compiled
@@ -29,7 +29,6 @@ def latitude(u: Any, v: Any) -> Any:
     return np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=-1)
 
 
-TURN = (0.0, 2 * np.pi)
 surfaces: dict[str, tuple[Callable[[], gm.Surface], int, int]] = {
     # surface, Euler characteristic, number of borders
     "torus": (gm.surfaces.torus, 0, 0),
@@ -41,9 +40,7 @@ surfaces: dict[str, tuple[Callable[[], gm.Surface], int, int]] = {
     "belt": (gm.surfaces.ellipsoid_patch, 0, 2),
     "catenoid": (gm.surfaces.catenoid, 0, 2),
     "moebius": (gm.surfaces.moebius_band, 0, 1),
-    "klein": (
-        lambda: gm.Surface.from_callable(klein, (TURN, (-np.pi, np.pi)), ("mirrored", True)), 0, 0,
-    ),
+    "klein": (klein_bottle, 0, 0),
     "klein, v flips": (
         lambda: gm.Surface.from_callable(
             lambda u, v: klein(v, u), ((-np.pi, np.pi), TURN), (True, "mirrored")

@@ -13,7 +13,7 @@ from gaussmap.tools.cad.edges import between_two, edges_of, sides_at
 from gaussmap.tools.cad.faces import own_parameters
 from gaussmap.tools.cad.results import space_of
 
-from .shapes import SOLIDS, box, compound, lie_on_faces, loose_faces
+from .shapes import SOLIDS, lie_on_faces
 
 # Curves of intersection that Open CASCADE computed are borders within its default tolerance.
 COMPUTED = ("cut ball", "as NURBS", "cone and cylinder", "crossed cylinders")
@@ -83,11 +83,3 @@ def test_wires_close_and_lie_on_their_faces(name, part_with):
             assert area == pytest.approx(wanted, rel=0.05)  # the same way around
     degenerate = arrays["edge_vertices"][arrays["edge_degenerate"]]
     assert (degenerate[:, 0] == degenerate[:, 1]).all()
-
-
-def test_loose_faces_are_sewn_and_borders_are_no_edges(part_with):
-    faces = loose_faces(box(3.0, 2.0, 1.0))
-    part = part_with(compound(*faces[:5]))
-    assert len(sharp_edges(part)) == 8
-    assert gm.sample(part, 40, edges=True).report.edge_samples > 8
-    assert gm.sample(part_with(faces[0]), 10, edges=True).report.edge_samples == 0
