@@ -4,45 +4,10 @@ import csv
 from dataclasses import replace
 
 import gaussmap as gm
-import numpy as np
 import pytest
-from gaussmap.tools.cad.examples import box, box_faces
+from gaussmap.tools.cad.examples import box_faces
 
-from .made import FAILED, cylinder_faces, part
-
-
-@pytest.fixture
-def saved(tmp_path, monkeypatch):
-    """Save a box, and a part with a face that failed, and go to their folder."""
-    monkeypatch.chdir(tmp_path)
-    part([*cylinder_faces(), FAILED]).save("part.npz")
-    box().save("box.npz")
-    return "part.npz"
-
-
-def test_faces(saved, capsys, main):
-    assert main(["faces", saved]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [x.split() for x in lines] == [
-        ["0", "cylinder", "12.5664", "1", "loop"],
-        ["1", "plane", "3.14159", "1", "loop"],
-        ["2", "plane", "3.14159", "1", "loop"],
-        ["3", "unknown", "0", "0", "loops", "failed:", "it", "has", "no", "surface"],
-    ]
-
-
-def test_sample(saved, capsys, main):
-    assert main(["sample", saved, "--count", "60", "-o", "out.ply"]) == 0
-    captured = capsys.readouterr()
-    assert "out.ply: 60 samples" in captured.out
-    assert "4 faces, 1 of them without samples" in captured.out
-    assert "1 of 4 faces cannot be sampled" in captured.err
-    samples = gm.read_samples("out.ply")
-    assert len(samples) == 60
-    assert set(samples.face_index.tolist()) == {0, 1, 2}
-    fields = ["--fields", "points,face_index", "--quiet"]
-    assert main(["sample", saved, "--coverage", "0.5", "-o", "out.npz", *fields]) == 0
-    assert np.isfinite(gm.read_samples("out.npz").points).all()
+from .made import part
 
 
 @pytest.mark.parametrize(

@@ -60,11 +60,6 @@ def test_box(request_):
     assert (at_border.sum(axis=1) >= 2).all()
     assert (at_border.sum(axis=1) == 3).sum() == 8  # one sample a corner
     assert len(np.unique(edge.points, axis=0)) == len(edge)
-    # Both normals are the outward ones of planes through the point.
-    for normals in (edge.normals, edge.other_normals):
-        assert np.array_equal(np.abs(normals).max(axis=1), np.ones(len(edge)))
-        assert ((normals * (2.0 * edge.points / SIZES - 1.0)).sum(axis=1) == 1.0).all()
-    assert np.array_equal((edge.normals * edge.other_normals).sum(axis=1), np.zeros(len(edge)))
     both_ways(edge, box(*SIZES))
     assert pairs_of(edge) == {x.faces for x in box_edges(*SIZES)}
     assert f"; {len(edge)} of the samples are on sharp edges" in samples.summary()
@@ -90,8 +85,6 @@ def test_circles_are_exact_though_the_file_has_few_points():
     for k, z in ((1, 0.0), (2, 2.0)):
         ring = edge[edge.other_face_index == k]
         assert np.abs(ring.points[:, 2] - z).max() < 1e-14
-        np.testing.assert_allclose(ring.normals[:, :2], ring.points[:, :2], atol=1e-13)
-        np.testing.assert_allclose(ring.other_normals, [[0.0, 0.0, z - 1.0]] * len(ring))
         # Around the circle normals turn as much as between neighbours elsewhere.
         steps = np.diff(np.sort(np.arctan2(ring.points[:, 1], ring.points[:, 0])))
         assert steps.max() < 1.05 * steps.min()

@@ -34,11 +34,6 @@ def test_parts_have_samples_on_faces_that_can_be_reached(how: dict[str, Any]) ->
         assert (samples.report.coverage or np.inf) <= how["coverage"]
 
 
-def test_a_box_has_samples_on_its_top() -> None:
-    top = gm.sample(box(), 100, reach=((0, 0, 1), 30.0))
-    assert {*(top.face_index if top.face_index is not None else ())} == {5}
-
-
 @pytest.mark.slow
 def test_weights_and_deviation_are_those_of_what_is_in_reach() -> None:
     """Of a surface of revolution, of which a sixth is in reach."""

@@ -95,16 +95,6 @@ def test_coverage_that_a_count_cannot_reach():
     assert len(samples) == 20
 
 
-def test_angle_holds_for_the_part(plates):
-    samples = gm.sample(plates, angle=15.0)
-    assert samples.report.angle <= 15.0
-    rng = np.random.default_rng(1)
-    normals = rng.normal(size=(20_000, 3))
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)  # those of the sphere are all
-    assert widest_angle(samples, normals) <= 15.0
-    assert samples.normal_deviation().normal_space <= 15.0
-
-
 def tips(width: float, power: int, lean: float, count: int) -> Part:
     """Return half a cone of NURBS that is trimmed to a strip with two thin tips, and a plane."""
     half, knots = np.sqrt(0.5), (np.array([0, 0, 0, 0.5, 0.5, 1, 1, 1.0]), np.array([0, 0, 1, 1.0]))

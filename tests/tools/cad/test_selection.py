@@ -196,6 +196,13 @@ def test_other_kinds_have_none():
 def test_faces_of_a_kind(failing, tmp_path, capsys, main):
     path = str(tmp_path / "part.npz")
     failing.save(path)
+    assert main(["faces", path]) == 0
+    assert [x.split() for x in capsys.readouterr().out.splitlines()] == [
+        ["0", "cylinder", "12.5664", "1", "loop"],
+        ["1", "plane", "3.14159", "1", "loop"],
+        ["2", "plane", "3.14159", "1", "loop"],
+        ["3", "unknown", "nan", "0", "loops", "failed:", "it", "has", "no", "surface"],
+    ]
     assert main(["faces", path, "--kind", "plane", "--kind", "unknown"]) == 0
     assert [x.split()[0] for x in capsys.readouterr().out.splitlines()] == ["1", "2", "3"]
     assert main(["faces", path, "--kind", "cylinder", "--json"]) == 0
