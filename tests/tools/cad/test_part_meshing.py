@@ -130,22 +130,6 @@ def test_open_shells():
     assert (on_border[..., 1] == SIZES[1]).all()  # of the face that is missing
 
 
-def test_a_hole():
-    """A plate with a hole, of two loops: none of the triangles is in the hole."""
-    ends, hole = (0.0, 4.0), (1.0, 3.0)
-    loops = [made.rectangle(ends, ends), made.rectangle(hole, hole)[[0, 3, 2, 1]]]
-    edges, wires = [], []
-    for first, loop in zip((0, 4), loops, strict=True):
-        wires.append([(first + k, 0, False) for k in range(4)])
-        for k in range(4):
-            sides = [made.side(loop[[k, (k + 1) % 4]])]
-            edges.append(made.edge((0,), sides, (first + k, first + (k + 1) % 4)))
-    plate = made.face("plane", u=ends, v=ends, area=12.0, loops=loops, wires=wires)
-    vertices = np.pad(np.concatenate(loops), [(0, 0), (0, 1)])
-    mesh = sound(made.part([plate], "plate", False, edges=edges, vertices=vertices), 300, euler=0)
-    assert face_normals(mesh)[:, 2].sum() == pytest.approx(12.0, rel=1e-12)
-
-
 def ring(inner: float) -> Part:
     """Return a flat ring of radii 1 and `inner`, whose circles begin at opposite sides."""
     radii, ends = (1.0, inner), (-1.0, 1.0)

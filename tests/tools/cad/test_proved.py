@@ -13,30 +13,19 @@ import numpy as np
 import pytest
 from gaussmap.tools.cad.examples import all_kinds
 from gaussmap.tools.cad.records import FaceRecord, Geometry
+from scipy.spatial.transform import Rotation
 
 from ...products import covering
 from ...shapes import same
 from .made import KINDS, TURN, UNIT, circle, face, net, nurbs, part, placement
 
-
-def random_normals(count: int, seed: int = 0) -> np.ndarray:
-    found = np.random.default_rng(seed).normal(size=(count, 3))
-    return found / np.linalg.norm(found, axis=1, keepdims=True)
-
-
-def rotation(seed: int) -> np.ndarray:
-    q, r = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
-    q *= np.sign(np.diag(r))
-    return q if np.linalg.det(q) > 0.0 else -q
-
-
 # Frames (origin, columns x, y, z): turned, mirrored, far away, and neither orthogonal nor unit.
 SKEW = np.array([[1.0, 0.2, 0.0], [0.0, 0.8, 0.1], [0.0, 0.0, 1.3]])
 FRAMES = {
-    "turned": ((1.0, -2.0, 3.0), rotation(1)),
-    "mirrored": ((0.5, 0.0, 0.0), rotation(2) * [1.0, 1.0, -1.0]),
-    "far": ((1e6, -1e6, 1e6), rotation(3)),
-    "skew": ((0.0, 0.0, 1.0), rotation(4) @ SKEW),
+    "turned": ((1.0, -2.0, 3.0), Rotation.random(None, 1).as_matrix()),
+    "mirrored": ((0.5, 0.0, 0.0), Rotation.random(None, 2).as_matrix() * [1.0, 1.0, -1.0]),
+    "far": ((1e6, -1e6, 1e6), Rotation.random(None, 3).as_matrix()),
+    "skew": ((0.0, 0.0, 1.0), Rotation.random(None, 4).as_matrix() @ SKEW),
 }
 
 
@@ -95,7 +84,9 @@ def test_radii_contain_the_exact_parameters(frame):
     near = np.array([1.0, 0.3, 1e3]) * 10.0 ** -np.arange(0, 9)[:, None]
     near[:, 2] = 1.0
     columns = FRAMES[frame][1]
-    normals = np.concatenate([random_normals(300), near @ np.linalg.inv(columns) * [1, 1, 1]])
+    normals = np.concatenate(
+        [gm.directions.random(300, seed=0), near @ np.linalg.inv(columns) * [1, 1, 1]]
+    )
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     ball = part([face("sphere", 1.0, place=place_of(frame))])
     samples = gm.sample(ball, normals=normals)
@@ -356,7 +347,7 @@ def test_the_parts_of_a_closed_surface_have_its_degree(scale):
     for low, high in itertools.pairwise(lines):
         loop = np.array([(low, 0.0), (high, 0.0), (high + 0.5, TURN), (low + 0.5, TURN)])
         faces.append(face("torus", *sizes, u=(low, high + 0.5), place=place, loops=[loop]))
-    known, normals = gm.GaussMap(part(faces)), random_normals(2000, 9)
+    known, normals = gm.GaussMap(part(faces)), gm.directions.random(2000, seed=9)
     assert (known.count(normals) == 2).all()
     assert (known.degree(normals) == 0).all()
 
@@ -367,7 +358,7 @@ def test_what_has_no_bounds_is_estimated():
     x, y = np.meshgrid(nodes, nodes, indexing="ij")
     sheet = nurbs(np.stack([x, y, x * x - y * y], axis=2), knots=np.repeat([0.0, 1.0], 14))
     faces = [FaceRecord(sheet, (UNIT, UNIT), area=2.0), face("sphere", 1.0, v=(-0.5, 0.5))]
-    samples = gm.sample(part(faces), normals=random_normals(300))
+    samples = gm.sample(part(faces), normals=gm.directions.random(300, seed=0))
     of_ball = samples.face_index == 1
     assert 0 < of_ball.sum() < len(samples)
     assert np.isfinite(samples.uv_radius[of_ball]).all()
@@ -378,7 +369,7 @@ def test_what_has_no_bounds_is_estimated():
 
 
 def test_answers_do_not_depend_on_earlier_calls():
-    kinds, normals = all_kinds(), random_normals(80)
+    kinds, normals = all_kinds(), gm.directions.random(80, seed=0)
     known = gm.GaussMap(kinds)
     first = known.points(normals)
     gm.sample(kinds, 100)

@@ -72,15 +72,6 @@ def test_no_more_than_asked_are_chosen_from_all_over():
     assert len(Candidates(rows, 0.1).choose(0.1, 0)) == 0
 
 
-def test_nothing_is_chosen_twice():
-    candidates = Candidates(rows_of(500, 5, 0.0), 0.1)
-    first = candidates.choose(0.1, 500)
-    assert len(candidates.choose(0.1, 500)) == 0
-    again = candidates.choose(0.05, 500)
-    assert len(again) > 0
-    assert not set(first) & set(again)
-
-
 @pytest.mark.compiled
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_parts_know_of_one_another(threads, monkeypatch):

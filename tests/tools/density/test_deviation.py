@@ -11,7 +11,6 @@ from .test_guarantee import places
 pytestmark = pytest.mark.compiled
 
 CELLS = (24, 24)
-RIGHT = gm.surfaces.cylinder(1.0, 1.0)
 
 
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band"])
@@ -30,20 +29,6 @@ def test_no_place_of_a_grid_has_a_larger_angle(name):
 def test_what_was_asked_is_kept():
     samples = gm.sample(gm.fit("torus", CELLS), angle=12.0)
     assert 6.0 < samples.normal_deviation().normal_space <= 12.0
-
-
-def test_a_known_angle():
-    count = 12
-    angles = 2 * np.pi * np.arange(count) / count
-    normals = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
-    spline = gm.fit(RIGHT, (96, 4))
-    points = normals + np.array([0, 0, 0.5])
-    samples = gm.Samples(
-        points=points, normals=normals, report=gm.sample(spline, 5).report, spline=spline
-    )
-    deviation = samples.normal_deviation()
-    assert deviation.normal_space == pytest.approx(15.0, abs=0.2)
-    assert deviation.space == pytest.approx(15.0, abs=0.2)
 
 
 def test_no_samples_are_far_from_everything():

@@ -4,6 +4,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.density.fibonacci_lattice import Lattice
+from scipy.spatial.transform import Rotation
 
 from ...products import covering
 from ...shapes import moved
@@ -15,12 +16,6 @@ FULL_NAMES = ["torus", "sphere", "moebius_band", "catenoid", "ellipsoid_patch"]
 
 def spline_of(name, turned):
     return gm.fit(moved(gm.surfaces.surface(name), rotation=turned), (16, 16))
-
-
-def rotation(rng):
-    q, r = np.linalg.qr(rng.standard_normal((3, 3)))
-    q *= np.sign(np.diag(r))
-    return q * np.sign(np.linalg.det(q))
 
 
 def all_normals(spline, count=60):
@@ -35,7 +30,7 @@ def all_normals(spline, count=60):
     "seed", [None, *(pytest.param(seed, marks=pytest.mark.compiled) for seed in (0, 1, 2))]
 )
 def test_cap_holds_all_normals_and_little_more(name, seed):
-    turned = np.eye(3) if seed is None else rotation(np.random.default_rng(seed))
+    turned = np.eye(3) if seed is None else Rotation.random(None, seed).as_matrix()
     spline = spline_of(name, turned)
     lattice = Lattice.around(spline)
     assert np.linalg.norm(lattice.axis) == pytest.approx(1.0, abs=2 * ULP)
