@@ -167,6 +167,31 @@ def widest_angle(samples: gm.Samples, normals: Any) -> float:
     return float(np.degrees(2.0 * np.arcsin(KDTree(samples.normals).query(normals)[0].max() / 2.0)))
 
 
+def area_of(surface: gm.Surface, side: int = 400) -> float:
+    """Estimate the area inside the trim from side × side jittered parameters."""
+    (u0, u1), (v0, v1) = surface.domain
+    cells = np.stack(np.meshgrid(*[np.arange(side)] * 2, indexing="ij"), axis=-1).reshape(-1, 2)
+    parts = (cells + np.random.default_rng(3).random(cells.shape)) / side
+    uv = np.array([u0, v0]) + parts * (u1 - u0, v1 - v0)
+    uv = uv if surface.trim is None else uv[surface.trim.contains(uv)]
+    jets = surface.jets(*np.ascontiguousarray(uv.T))
+    lengths = np.linalg.norm(np.cross(jets[:, 1], jets[:, 2]), axis=1)
+    return float(lengths.sum()) * (u1 - u0) * (v1 - v0) / side**2
+
+
+def central_differences(f: Any, u: Any, v: Any, h: float) -> Any:
+    """Return the point and its derivatives by u, v, uu, uv, vv (k, 6, 3), of order 8 in h."""
+    first = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5])
+    first = np.concatenate([first, [0.0], -first[::-1]]) / h
+    second = np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5])
+    second = np.concatenate([second, [-205 / 72], second[::-1]]) / h**2
+    at = np.eye(9)[4]
+    steps = h * np.arange(-4, 5)
+    points = f(u[:, None, None] + steps[:, None], v[:, None, None] + steps)
+    weights = [(at, at), (first, at), (at, first), (second, at), (first, first), (at, second)]
+    return np.stack([np.einsum("i,j,kijx->kx", *x, points) for x in weights], axis=1)
+
+
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 
 

@@ -10,7 +10,8 @@ from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 from gaussmap.tools.cad.units import with_unit
 
 from ...refusals import refused
-from .made import TURN, area_of, central_differences, net, normals_of, nurbs, rectangle
+from ...shapes import area_of, central_differences
+from .made import TURN, net, normals_of, nurbs, rectangle
 
 OPEN, PERIODIC = ("open", "open"), ("periodic", "periodic")
 Z = np.array([0.36, 0.48, 0.8])

@@ -8,7 +8,7 @@ import pytest
 from gaussmap.tools.density.cells import Cells
 from gaussmap.tools.density.methods import space_on
 
-from ..cad.made import central_differences
+from ...shapes import central_differences
 
 NAMES = ("torus", "wavy_graph", "ellipsoid", "cone")
 

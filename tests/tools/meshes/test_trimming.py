@@ -9,10 +9,11 @@ import shapely
 from gaussmap.tools.meshes.border import border_lines
 from gaussmap.tools.meshes.places import wrapped
 
-from ...shapes import TURN, circle
-from ..cad.made import area_of
+from ...shapes import area_of, circle
 
 pytestmark = pytest.mark.compiled
+
+TURN = 2.0 * np.pi
 
 
 def plane(u, v):

@@ -18,7 +18,7 @@ from OCP.Geom import Geom_CylindricalSurface, Geom_Ellipse
 from OCP.Geom2d import Geom2d_Line
 from OCP.gp import gp_Ax1, gp_Ax3, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d
 
-from ..made import area_of
+from ....shapes import area_of
 from . import shapes
 from .shapes import axes, ball, box, cone, cut, cylinder, faces_of, states_of, torus
 
