@@ -15,10 +15,7 @@ which count all this. `ROUNDINGS` states k for every formula; how far the terms 
 not in k.
 """
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -34,6 +31,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from ..symbolic.calls import flat, grouped
+from ..symbolic.terms import Term, quotients
 
 UNIT = Fraction(1, 2**53)
 
@@ -50,53 +48,6 @@ ROUNDINGS = {
     "over_normals.hessian_at_normal": 59,
     "over_normals.curvature_at_normal": 146,
 }
-
-
-@dataclass(frozen=True)
-class Term:
-    """An exact value, the sum of the moduli of the terms it is made of, and their roundings."""
-
-    value: Fraction
-    size: Fraction
-    roundings: int
-
-    @classmethod
-    def of(cls, number: Any) -> Term:
-        return (
-            number if isinstance(number, Term) else cls(Fraction(number), abs(Fraction(number)), 0)
-        )
-
-    def __add__(self, other: Any) -> Term:
-        other = Term.of(other)
-        roundings = max(self.roundings, other.roundings) + 1
-        return Term(self.value + other.value, self.size + other.size, roundings)
-
-    def __mul__(self, other: Any) -> Term:
-        other = Term.of(other)
-        roundings = self.roundings + other.roundings + 1
-        return Term(self.value * other.value, self.size * other.size, roundings)
-
-    def __truediv__(self, other: Any) -> Term:
-        other = Term.of(other)
-        quotients.append(other)
-        roundings = self.roundings + other.roundings + 1
-        size = self.size * other.size / other.value**2
-        return Term(self.value / other.value, size, roundings)
-
-    def __neg__(self) -> Term:
-        return Term(-self.value, self.size, self.roundings)
-
-    def __sub__(self, other: Any) -> Term:
-        return self + -Term.of(other)
-
-    def __rtruediv__(self, other: Any) -> Term:
-        return Term.of(other) / self
-
-    __radd__ = __add__
-    __rmul__ = __mul__
-
-
-quotients: list[Term] = []
 
 
 def inputs_of(name: str) -> list[str]:

@@ -1,11 +1,26 @@
-"""Arguments of generated functions, and their results, as numbers."""
+"""Formulas for given values, and arguments and results of the functions made of them."""
 
 from typing import Any
 
 import sympy as sp
 from gaussmap.generated import vectors
 from gaussmap.symbolic import emit
-from gaussmap.symbolic.notation import VectorSymbol
+from gaussmap.symbolic.notation import VectorSymbol, scalar, substitute
+
+
+def components(**named: Any) -> dict[sp.Expr, Any]:
+    """Return the components of vectors of the plane or of space, by their symbols."""
+    return {
+        scalar(f"{name}_{axis}"): x
+        for name, vector in named.items()
+        for axis, x in zip("xyz"[: len(vector)], vector, strict=True)
+    }
+
+
+def evaluated(formula: Any, values: dict[Any, Any]) -> dict[str, Any]:
+    """Return the outputs of a formula by their names, with values in the place of symbols."""
+    return {name: substitute(x, values) for name, x in formula.expanded().items()}
+
 
 TYPES = {"patch": vectors.Patch, "arc": vectors.Arc, "hessian": vectors.Hessian}
 

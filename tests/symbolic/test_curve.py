@@ -10,6 +10,7 @@ from gaussmap.symbolic import curve, spline
 from gaussmap.symbolic.notation import scalar
 
 from ..refusals import refused
+from .calls import components, evaluated
 
 t = sp.Symbol("t", real=True)
 n: Any = sp.Matrix(sp.symbols("n_x n_y", real=True))
@@ -28,14 +29,10 @@ class Case:
         )
         self.tangent: Any = self.p.diff(t).applyfunc(sp.expand)
         self.normal: Any = sp.Matrix([self.tangent[1], -self.tangent[0]])
-        control = {
-            symbol: sp.Integer(x)
-            for point, row in zip(curve.CONTROL_POINTS, points, strict=True)
-            for symbol, x in zip(point.components, row, strict=True)
-        }
-        self.values = {
-            scalar(name): x.xreplace(control) for name, x in curve.POWER_FORM.expanded().items()
-        }
+        names = [x.name for x in curve.CONTROL_POINTS]
+        control = components(**dict(zip(names, map(sp.Matrix, points), strict=True)))
+        form = evaluated(curve.POWER_FORM, control)
+        self.values = {scalar(name): x for name, x in form.items()}
 
     def expression(self, formula, name: str) -> Any:
         """Return an output of a formula for this arc; n, t stay symbols."""

@@ -5,26 +5,19 @@ from gaussmap.symbolic.gaussian_image import EDGE_VECTORS, TANGENTIAL
 from gaussmap.symbolic.notation import Dot, scalar, substitute, vectors
 from gaussmap.symbolic.patch import FORMS, TANGENTS
 
-
-def components(names: str) -> list[sp.Symbol]:
-    return [y for x in vectors(names) for y in x.components]
+from .calls import components, evaluated
 
 
 def test_the_form_of_an_edge_is_that_of_its_patch() -> None:
-    tangents = TANGENTS.expanded()
-    ends = {
-        scalar(f"{name}{at}_{axis}"): substitute(
-            tangents[f"{field}_{axis}"], {scalar("u"): sp.S(at), scalar("v"): sp.S.Zero}
-        )
-        for at in (0, 1)
-        for name, field in (("T", "p_u"), ("X", "p_v"))
-        for axis in "xyz"
-    }
-    found = {name: substitute(x, ends) for name, x in EDGE_VECTORS.expanded().items()}
-    for symbol in components("abde"):
-        assert sp.expand(found[symbol.name] - symbol) == 0
-    form = FORMS.expanded()["V"]
-    assert not {*components("c")} & form.free_symbols
+    ends = {}
+    for at in (0, 1):
+        tangents = evaluated(TANGENTS, {scalar("u"): sp.S(at), scalar("v"): sp.S.Zero})
+        for name, field in (("T", "p_u"), ("X", "p_v")):
+            ends |= components(**{f"{name}{at}": [tangents[f"{field}_{axis}"] for axis in "xyz"]})
+    found = evaluated(EDGE_VECTORS, ends)
+    for vector in vectors("abde"):
+        assert all(sp.expand(found[x.name] - x) == 0 for x in vector.components)
+    assert not {*vectors("c")[0].components} & FORMS.expanded()["V"].free_symbols
 
 
 def test_the_tangential_part_is_perpendicular() -> None:

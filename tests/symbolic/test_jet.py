@@ -4,34 +4,20 @@ from typing import Any
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic import Formula
 from gaussmap.symbolic.jet import AT_JET, AT_POLE, BEND, CONTOUR, NEWTON, POLAR_CHART
-from gaussmap.symbolic.notation import Cross, Det, Dot, derivative, scalar, substitute
-from gaussmap.symbolic.notation import vectors as vector_symbols
+from gaussmap.symbolic.notation import Cross, Det, Dot, derivative, scalar, vectors
 
 from ..refusals import refused
+from .calls import components, evaluated
 
 diff: Any = sp.diff
 s, t, phi, r = sp.symbols("s t phi r", real=True)
 GRAPH: Any = sp.Matrix([s + t**2, t - s * t, 1 + 2 * s**2 + 3 * s * t - t**2 + s**3])
 
 
-def vectors(**values: Any) -> dict[sp.Expr, sp.Expr]:
-    """Return the components of vectors by their symbols."""
-    return {
-        scalar(f"{name}_{axis}"): x
-        for name, value in values.items()
-        for axis, x in zip("xyz", value, strict=True)
-    }
-
-
-def evaluated(formula: Formula, values: dict[sp.Expr, sp.Expr]) -> dict[str, sp.Expr]:
-    return {name: substitute(x, values) for name, x in formula.expanded().items()}
-
-
 def jet(x: Any, u: sp.Symbol, v: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
     derivatives = {"a": (u, u), "b": (u, v), "c": (v, v), "d": (u,), "e": (v,)}
-    return vectors(**{name: diff(x, *by) for name, by in derivatives.items()})
+    return components(**{name: diff(x, *by) for name, by in derivatives.items()})
 
 
 def test_a_sphere_with_outward_normals():
@@ -52,7 +38,7 @@ def test_newtons_step_is_exact_on_a_quadratic_patch():
     normal = diff(x, s).cross(diff(x, t)).subs(at)
     origin = {s: 0, t: 0}
     values = {key: value.subs(origin) for key, value in jet(x, s, t).items()}
-    found = evaluated(NEWTON, values | vectors(n=normal))
+    found = evaluated(NEWTON, values | components(n=normal))
     assert (found["u"], found["v"]) == (at[s], at[t])
     here = diff(x, s).cross(diff(x, t)).subs(origin)
     assert found["s"] == normal.cross(here).dot(normal.cross(here)) / here.dot(here)
@@ -63,7 +49,7 @@ def test_the_contour_is_where_the_normal_is_perpendicular():
     """f is N·w, and its derivatives are those of that function."""
     along = sp.Matrix([2, -1, 3])
     N = diff(GRAPH, s).cross(diff(GRAPH, t))
-    found = evaluated(CONTOUR, jet(GRAPH, s, t) | vectors(w=along))
+    found = evaluated(CONTOUR, jet(GRAPH, s, t) | components(w=along))
     f = N.dot(along)
     for name, wanted in {"f": f, "f_u": diff(f, s), "f_v": diff(f, t)}.items():
         assert sp.expand(found[name] - wanted) == 0
@@ -77,13 +63,13 @@ def test_the_second_form_of_a_tangent_vector():
     at = {s: sp.Rational(1, 7), t: sp.Rational(-2, 9), r: 0}
     x = GRAPH.subs(line, simultaneous=True)
     N = diff(GRAPH, s).cross(diff(GRAPH, t))
-    values = jet(GRAPH, s, t) | vectors(w=diff(x, r).subs(r, 0))
+    values = jet(GRAPH, s, t) | components(w=diff(x, r).subs(r, 0))
     found = evaluated(BEND, {key: value.subs(at) for key, value in values.items()})
     assert found["k"] == N.dot(diff(x, r, r)).subs(at)
 
 
 def test_the_product_rule():
-    a, b, c, d = vector_symbols("abcd")
+    a, b, c, d = vectors("abcd")
     by = {a: c, b: d}
     assert derivative(Dot(a, b), by) == Dot(c, b) + Dot(a, d)
     assert derivative(Dot(a, a), {a: a}) == 2 * Dot(a, a)
@@ -113,7 +99,7 @@ def test_at_pole():
     }
     first = {f"e{k}": diff(along[k], r).subs(r, 0) for k in (0, 2)}
     second = {f"c{k}": diff(along[k], r, 2).subs(r, 0) for k in (0, 1, 2)}
-    found = evaluated(AT_POLE, vectors(**first, **second))
+    found = evaluated(AT_POLE, components(**first, **second))
     for name, by in {"ss": (s, s), "st": (s, t), "tt": (t, t), "s": (s,), "t": (t,)}.items():
         expected = diff(GRAPH, *by).subs({s: 0, t: 0})
         assert [sp.nsimplify(found[f"X_{name}_{axis}"]) for axis in "xyz"] == list(expected)

@@ -106,6 +106,16 @@ def test_rows_of_latex_fit_on_a_page(formula):
 # --- the two pages --------------------------------------------------------------------------------
 
 
+def of_markdown(name: str) -> str:
+    """Return what the page in Markdown says of a formula or surface."""
+    return MARKDOWN.partition(f"### `{name}`\n")[2].partition("\n#")[0]
+
+
+def of_tex(name: str) -> str:
+    title = f"\\subsection*{{\\texttt{{{name}}}}}".replace("_", r"\_")
+    return TEX.partition(title)[2].partition("\\subsection")[0]
+
+
 def blocks() -> list[str]:
     return re.findall(r"^```math\n(.*?)\n```$", MARKDOWN, re.DOTALL | re.MULTILINE)
 
@@ -155,14 +165,12 @@ def test_latex_is_balanced():
 def test_entries_name_source_inputs_and_operations(formula):
     code = straight_line(formula)
     operations = f"{code.operations_before} as written, {code.operations_after} as run."
-    entry = MARKDOWN.partition(f"### `{formula.name}`\n")[2].partition("\n#")[0]
+    entry = of_markdown(formula.name)
     assert formula.latex() in entry
     assert f"\n- Source: {formula.source}.\n" in entry
     assert f"\n- Operations: {operations}" in entry
     assert entry.partition("- Inputs: ")[2].partition("\n")[0].count("$`") == len(formula.inputs)
-    title = f"\\subsection*{{\\texttt{{{formula.name}}}}}".replace("_", r"\_")
-    tex = TEX.partition(title)[2]
-    assert operations in tex.partition("\\subsection")[0]
+    assert operations in of_tex(formula.name)
 
 
 @pytest.mark.parametrize(
@@ -179,16 +187,14 @@ def test_entries_name_source_inputs_and_operations(formula):
     ],
 )  # fmt: skip
 def test_entries_name_the_functions(name, functions):
-    entry = MARKDOWN.partition(f"### `{name}`\n")[2].partition("\n#")[0]
-    assert entry.partition("\n- Functions: ")[2].strip() == functions
+    assert of_markdown(name).partition("\n- Functions: ")[2].strip() == functions
     typeset = re.sub(r"`(.*?)`", r"\\texttt{\1}", functions).replace("_", r"\_")
-    title = f"\\subsection*{{\\texttt{{{name}}}}}".replace("_", r"\_")
-    assert f"Functions: {typeset}" in TEX.partition(title)[2].partition("\\subsection")[0]
+    assert f"Functions: {typeset}" in of_tex(name)
 
 
 @pytest.mark.parametrize("surface", surfaces.CATALOGUE.values(), ids=surfaces.CATALOGUE)
 def test_entries_of_surfaces_name_position_domain_and_parameters(surface):
-    entry = MARKDOWN.partition(f"### `{surface.name}`\n")[2].partition("\n#")[0]
+    entry = of_markdown(surface.name)
     assert surface.sentence in entry
     assert r"\mathbf{x}(u, v) &= \begin{pmatrix}" in entry
     assert r"(u, v) &\in [" in entry

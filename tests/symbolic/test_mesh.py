@@ -4,27 +4,16 @@ import math
 
 import sympy as sp
 from gaussmap.symbolic import formulas
-from gaussmap.symbolic.notation import scalar, substitute
+from gaussmap.symbolic.notation import scalar
 
-
-def values(name: str, numbers: dict[str, sp.Expr]) -> dict[str, sp.Expr]:
-    known = {scalar(symbol): x for symbol, x in numbers.items()}
-    return {key: substitute(x, known) for key, x in formulas[name].expanded().items()}
-
-
-def components(**vectors: tuple[int, int, int]) -> dict[str, sp.Expr]:
-    return {
-        f"{name}_{axis}": sp.Integer(x)
-        for name, vector in vectors.items()
-        for axis, x in zip("xyz", vector, strict=True)
-    }
+from .calls import components, evaluated
 
 
 def test_corner_products_of_a_triangle_in_a_plane():
     """The triangle has the area 3 and the normal (0, 0, 1)."""
     corners = components(p0=(1, 1, 5), p1=(4, 1, 5), p2=(2, 3, 5))
     normals = components(n0=(0, 0, 1), n1=(0, 0, -1), n2=(1, 0, 0))
-    found = values("corner_products", corners | normals)
+    found = evaluated(formulas["corner_products"], corners | normals)
     assert found == {"s0": 6, "s1": -6, "s2": 0, "L": 6}
 
 
@@ -36,22 +25,28 @@ def test_border_spacing_is_that_of_samples_of_this_density():
             inside = i * i + j * j <= 1600
             # points on the border count half, as half of their square lies beyond it
             k += sp.Rational(int(inside), 2 if j == 0 else 1)
-    spacing = values("border_spacing", {"r": r, "k": k})["d"]
+    spacing = evaluated(formulas["border_spacing"], {scalar("r"): r, scalar("k"): k})["d"]
     # Gauss's circle problem: the number of points is off by less than the perimeter
     assert math.isclose(float(spacing), 1.0, rel_tol=math.pi * 40 / float(k))
 
 
 def test_corner_cotangents_are_those_of_the_angles():
     """Of 45°, 90° and 45°; and of an angle of tangent 4/3 between equal ones of tangent 2."""
-    found = values("corner_cotangents", components(p0=(0, 0, 0), p1=(2, 0, 0), p2=(2, 0, 2)))
+    formula = formulas["corner_cotangents"]
+    found = evaluated(formula, components(p0=(0, 0, 0), p1=(2, 0, 0), p2=(2, 0, 2)))
     assert found == {"c0": 4, "c1": 0, "c2": 4, "L": 4}
-    found = values("corner_cotangents", components(p0=(0, 2, 1), p1=(1, 0, 1), p2=(-1, 0, 1)))
+    found = evaluated(formula, components(p0=(0, 2, 1), p1=(1, 0, 1), p2=(-1, 0, 1)))
     assert found == {"c0": 3, "c1": 2, "c2": 2, "L": 4}
 
 
 def test_a_ray_meets_a_triangle_where_the_formula_says():
     """From (1, 1, 4) along (0, 0, −2): 2 steps to (1, 1, 0), from the outer side."""
     corners = components(p0=(0, 0, 0), p1=(4, 0, 0), p2=(0, 2, 0))
-    found = values("ray_in_triangle", components(p=(1, 1, 4), d=(0, 0, -2)) | corners)
-    assert [found[x] / found["D"] for x in "UVT"] == [sp.Rational(1, 4), sp.Rational(1, 2), 2]
+    ray = components(p=(1, 1, 4), d=(0, 0, -2))
+    found = evaluated(formulas["ray_in_triangle"], ray | corners)
+    assert [sp.Rational(found[x], found["D"]) for x in "UVT"] == [
+        sp.Rational(1, 4),
+        sp.Rational(1, 2),
+        2,
+    ]
     assert found["D"] > 0

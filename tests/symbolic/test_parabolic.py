@@ -8,8 +8,9 @@ import sympy as sp
 from gaussmap.symbolic import BezierTriangle, gaussian_image, patch
 from gaussmap.symbolic.notation import dot, scalar
 
+from .calls import components, evaluated
+
 u, v, s, t = (scalar(x) for x in "uvst")
-n: Any = sp.Matrix(patch.n.components)
 NAMES = "abcde"
 
 
@@ -17,18 +18,11 @@ def random_vector(generator: random.Random) -> Any:
     return sp.Matrix([generator.randint(-9, 9) for _ in range(3)])
 
 
-def values_of(vectors) -> dict[Any, Any]:
-    """Return the components of a, b, c, d, e as substitutions."""
-    return {
-        component: value
-        for symbol, vector in zip(patch.VECTORS, vectors, strict=True)
-        for component, value in zip(symbol.components, vector, strict=True)
-    }
-
-
-def evaluated(formula, vectors, **more) -> list[Any]:
-    values = values_of(vectors) | {scalar(name): x for name, x in more.items()}
-    return [sp.expand(x.xreplace(values)) for x in formula.expanded().values()]
+def expanded(formula, vectors, **more) -> list[Any]:
+    """Return the outputs of a formula for vectors a, b, c, d, e and numbers."""
+    values = components(**dict(zip(NAMES, vectors, strict=True)))
+    values |= {scalar(name): x for name, x in more.items()}
+    return [sp.expand(x) for x in evaluated(formula, values).values()]
 
 
 def cubic_of(vectors) -> Any:
@@ -39,18 +33,18 @@ def cubic_of(vectors) -> Any:
 
 
 def binary_cubic(vectors) -> Any:
-    k30, k21, k12, k03 = evaluated(gaussian_image.PARABOLIC_DIRECTIONS, vectors)
+    k30, k21, k12, k03 = expanded(gaussian_image.PARABOLIC_DIRECTIONS, vectors)
     return k30 * s**3 + k21 * s**2 * t + k12 * s * t**2 + k03 * t**3
 
 
 def lines_at(vectors, direction) -> list[tuple[Any, Any, Any]]:
     """Return the lines of a direction by each of the three normals that do not vanish."""
     ends: dict[str, Any] = dict(zip("st", direction, strict=True))
-    normals = evaluated(gaussian_image.PARABOLIC_NORMAL, vectors, **ends)
+    normals = expanded(gaussian_image.PARABOLIC_NORMAL, vectors, **ends)
     names = ("n_x", "n_y", "n_z")
     triples = [normals[3 * k : 3 * k + 3] for k in range(3)]
     rows = [dict(zip(names, x, strict=True)) for x in triples if any(x)]
-    found = [evaluated(gaussian_image.PARABOLIC_LINE, vectors, **row, **ends) for row in rows]
+    found = [expanded(gaussian_image.PARABOLIC_LINE, vectors, **row, **ends) for row in rows]
     return [(x[0], x[1], x[2]) for x in found]
 
 
@@ -68,30 +62,17 @@ def test_binary_cubic_is_the_determinant(generator):
     assert sp.expand(rows.det() - binary_cubic(vectors)) == 0
 
 
-def test_the_cubic_vanishes_on_the_line_of_every_root(generator):
-    """For a symbolic direction (s, 1): what is left on the line is a multiple of the cubic in s."""
-    vectors = [random_vector(generator) for _ in NAMES]
-    normal = evaluated(gaussian_image.PARABOLIC_NORMAL, vectors, s=s, t=1)[:3]
-    more = dict(zip(("n_x", "n_y", "n_z"), normal, strict=True))
-    l_u, l_v, l_1 = evaluated(gaussian_image.PARABOLIC_LINE, vectors, **more, s=s, t=1)
-    on_line = sp.numer(sp.together(cubic_of(vectors).subs(v, -(l_u * u + l_1) / l_v)))
-    in_s = binary_cubic(vectors).subs(t, 1)
-    for coefficient in sp.Poly(on_line, u).all_coeffs():
-        assert sp.rem(sp.Poly(coefficient, s), sp.Poly(in_s, s)).is_zero
-
-
-def test_the_line_has_one_normal(generator):
-    """N(u,v) is parallel to n on the line, modulo the binary cubic."""
+def test_the_line_of_every_root_has_one_normal_and_there_the_cubic_vanishes(generator):
+    """For a symbolic direction (s, 1), on the line: both are multiples of the cubic in s."""
     a, b, c, d, e = vectors = [random_vector(generator) for _ in NAMES]
-    normal: Any = sp.Matrix(evaluated(gaussian_image.PARABOLIC_NORMAL, vectors, s=s, t=1)[:3])
+    normal: Any = sp.Matrix(expanded(gaussian_image.PARABOLIC_NORMAL, vectors, s=s, t=1)[:3])
     more: dict[str, Any] = dict(zip(("n_x", "n_y", "n_z"), normal, strict=True))
-    l_u, l_v, l_1 = evaluated(gaussian_image.PARABOLIC_LINE, vectors, **more, s=s, t=1)
+    l_u, l_v, l_1 = expanded(gaussian_image.PARABOLIC_LINE, vectors, **more, s=s, t=1)
     in_s = sp.Poly(binary_cubic(vectors).subs(t, 1), s)
-    place = {v: -(l_u * u + l_1) / l_v}
-    N = (a * u + b * v + d).cross(b * u + c * v + e).subs(place)
-    for component in N.cross(normal):
-        numerator = sp.Poly(sp.numer(sp.together(component)), u)
-        assert all(sp.rem(sp.Poly(x, s), in_s).is_zero for x in numerator.all_coeffs())
+    N = (a * u + b * v + d).cross(b * u + c * v + e)
+    for expression in (cubic_of(vectors), *N.cross(normal)):
+        on_line = sp.numer(sp.together(expression.subs(v, -(l_u * u + l_1) / l_v)))
+        assert all(sp.rem(sp.Poly(x, s), in_s).is_zero for x in sp.Poly(on_line, u).all_coeffs())
 
 
 def rational_patch(generator: random.Random, lines: list[Any]) -> list[Any]:
@@ -146,12 +127,8 @@ def test_arcs_lie_on_the_cones(generator):
     normals = triangle.evaluate(patch.CONTROL_NORMALS)
     edges = (("020", "011", "002"), ("002", "101", "200"), ("200", "110", "020"))
     for cone, edge in zip(triangle.boundary_cones, edges, strict=True):
-        values = {
-            scalar(f"N{k}_{axis}"): normals[f"N{index}_{axis}"]
-            for k, index in enumerate(edge)
-            for axis in "xyz"
-        }
-        arc = [x.xreplace(values) for x in gaussian_image.ARC.expanded().values()]
+        points = {f"N{k}": [normals[f"N{x}_{axis}"] for axis in "xyz"] for k, x in enumerate(edge)}
+        arc = [*evaluated(gaussian_image.ARC, components(**points)).values()]
         point: Any = sp.Matrix(arc[:3])
         along: Any = sp.Matrix(arc[3:])
         assert sp.expand((point.T * cone * point)[0]) == 0
@@ -162,14 +139,12 @@ def test_arcs_lie_on_the_cones(generator):
 def test_solid_angle_form_has_the_element_of_area_as_derivative():
     """In any chart n(x, y): ∂ω_y/∂x − ∂ω_x/∂y = det(n, n_x, n_y)/|n|³."""
     x, y = sp.symbols("x y", real=True)
-    names = [f"{vector}_{axis}" for vector in ("q", "n", "n_t") for axis in "xyz"]
-    (form,) = gaussian_image.SOLID_ANGLE.expanded().values()
     pole = sp.Matrix([sp.Rational(2, 7), sp.Rational(3, 7), sp.Rational(6, 7)])
     chart: Any = sp.Matrix([1 + x - y * y, 2 - 3 * x * y, 1 + 2 * y + x * x])
 
     def along(by: Any) -> Any:
-        values = [*pole, *chart, *chart.diff(by)]
-        return form.xreplace(dict(zip(map(scalar, names), values, strict=True)))
+        values = components(q=pole, n=chart, n_t=chart.diff(by))
+        return evaluated(gaussian_image.SOLID_ANGLE, values)["S_t"]
 
     density = sp.Matrix.hstack(chart, chart.diff(x), chart.diff(y)).det() / dot(chart, chart) ** (
         sp.Rational(3, 2)
@@ -180,28 +155,20 @@ def test_solid_angle_form_has_the_element_of_area_as_derivative():
 
 
 def test_solid_angle_of_an_octant():
-    names = [f"{vector}_{axis}" for vector in ("q", "n", "n_t") for axis in "xyz"]
-    (form,) = gaussian_image.SOLID_ANGLE.expanded().values()
     axes = [sp.eye(3).col(k) for k in range(3)]
     total = sp.S.Zero
     for start, end in ((0, 1), (1, 2), (2, 0)):
         point = (1 - t) * axes[start] + t * axes[end]
-        values = dict(zip(map(scalar, names), [0, 0, 1, *point, *point.diff(t)], strict=True))
-        total += sp.integrate(sp.simplify(form.xreplace(values)), (t, 0, 1))
+        values = components(q=(0, 0, 1), n=point, n_t=point.diff(t))
+        form = evaluated(gaussian_image.SOLID_ANGLE, values)["S_t"]
+        total += sp.integrate(sp.simplify(form), (t, 0, 1))
     assert sp.simplify(total - sp.pi / 2) == 0
 
 
 def test_curvature_of_derivatives_is_that_of_the_fundamental_forms(generator):
     p_u, p_v, *second = (random_vector(generator) for _ in range(5))
-    values = dict(
-        zip(
-            (x for v in ("p_u", "p_v", *"abc") for x in (scalar(f"{v}_{k}") for k in "xyz")),
-            (x for vector in (p_u, p_v, *second) for x in vector),
-            strict=True,
-        )
-    )
-    found = gaussian_image.CURVATURE_OF_DERIVATIVES.expanded().values()
-    K, *normal_parts = (x.xreplace(values) for x in found)
+    values = components(p_u=p_u, p_v=p_v, **dict(zip("abc", second, strict=True)))
+    K, *normal_parts = evaluated(gaussian_image.CURVATURE_OF_DERIVATIVES, values).values()
     normal = p_u.cross(p_v)
     L, M, N = (dot(normal, x) for x in second)
     area = dot(p_u, p_u) * dot(p_v, p_v) - dot(p_u, p_v) ** 2

@@ -25,12 +25,15 @@ x, y, z = sp.symbols("x y z", real=True)
         (y / sp.sqrt(x), "y / math.sqrt(x)"), (sp.sqrt(x) ** 3, "x * math.sqrt(x)"),
         ((x + y) ** 2, "(x + y) * (x + y)"),
         (sp.sin(x) * sp.cosh(y), "math.sin(x) * math.cosh(y)"), (2 * sp.pi, "2 * math.pi"),
+        (x**y, "math.pow(x, y)"), (x ** sp.Rational(1, 4), "math.pow(x, 0.25)"),
+        (x ** sp.Rational(-3, 4), "1.0 / math.pow(x, 0.75)"),
+        (x ** sp.Rational(1, 3), "math.pow(x, (1.0 / 3.0))"), (2**x, "math.pow(2, x)"),
+        (y / x**z, "math.pow(x, -z) * y"),
     ],
 )  # fmt: skip
 def test_source(expression, source):
     printed = source_of(expression)
-    assert "".join(printed.split()) == "".join(source.split()) or printed == source
-    assert "**" not in printed
+    assert printed == source
     values = {"x": 1.75, "y": 0.625, "z": -2.5}
     evaluated = eval(printed, {"math": math}, values)
     exact = expression.subs({sp.Symbol(k, real=True): sp.Rational(v) for k, v in values.items()})
@@ -41,25 +44,6 @@ def test_integers_stay_integers():
     """Kernels run on Python integers too, to decide signs exactly."""
     big = 10**30
     assert eval(source_of(2 * x - 3 * y**2), {}, {"x": big, "y": big}) == 2 * big - 3 * big**2
-
-
-@pytest.mark.parametrize(
-    ("expression", "source"),
-    [
-        (x**y, "math.pow(x, y)"),
-        (x ** sp.Rational(1, 4), "math.pow(x, 0.25)"),
-        (x ** sp.Rational(-3, 4), "1.0 / math.pow(x, 0.75)"),
-        (x ** sp.Rational(1, 3), "math.pow(x, (1.0 / 3.0))"),
-        (2**x, "math.pow(2, x)"),
-        (y / x**z, "math.pow(x, -z) * y"),
-    ],
-)
-def test_other_powers(expression, source):
-    printed = source_of(expression)
-    assert printed == source
-    values = {"x": 1.75, "y": 0.625, "z": -2.5}
-    exact = expression.subs({sp.Symbol(k, real=True): sp.Rational(v) for k, v in values.items()})
-    assert eval(printed, {"math": math}, values) == pytest.approx(float(exact), rel=1e-14)
 
 
 def test_integers_beyond_64_bits_are_floats():

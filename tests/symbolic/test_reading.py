@@ -85,28 +85,19 @@ def test_high_powers_are_compiled() -> None:
     assert "numpy.power(n_x, 1000)" in array_function(power)
 
 
-# --- numbers and truth values ---------------------------------------------------------------------
+# --- what is refused ------------------------------------------------------------------------------
 
-
-@pytest.mark.parametrize(
-    "text",
-    ["sech(Pow(pi*2, 2 >= 1))", "acsch(2 < 3)", "atan2(E, 10**50) + (3 < 3)",
-     "atan(Eq(atan2(10**50, tan(tan(1))), 99))", "u + True", "-(u > 0)", "2*(u > 0)", "u**(u > 0)",
-     "(u > 0) % 2", "(u > 0) < 1", "Max(u, True)", "Piecewise((u > 0, u > 0), (1, True))",
-     "Sum(u > k, (k, 0, 2))", "Sum(u, (k, 0, True))"],
-)  # fmt: skip
-def test_a_truth_value_is_no_number(text: str) -> None:
-    refused(text, "truth value where a number belongs")
-
-
-@pytest.mark.parametrize(
-    "text", ["u & v", "(u > 0) | 1", "~u", "not 1", "And(u, u > 0)", "Piecewise((u, u), (1, True))"]
-)
-def test_a_number_is_no_truth_value(text: str) -> None:
-    refused(text, "number where a truth value belongs")
-
-
-NO_NUMBERS = {
+UNLISTED = "factorial2", "harmonic", "hermite", "FallingFactorial", "Mod", "gamma", "legendre", "re"
+REFUSED: dict[str, tuple[str, ...]] = {
+    "truth value where a number belongs": (
+        "sech(Pow(pi*2, 2 >= 1))", "acsch(2 < 3)", "atan2(E, 10**50) + (3 < 3)",
+        "atan(Eq(atan2(10**50, tan(tan(1))), 99))", "u + True", "-(u > 0)", "2*(u > 0)",
+        "u**(u > 0)", "(u > 0) % 2", "(u > 0) < 1", "Max(u, True)",
+        "Piecewise((u > 0, u > 0), (1, True))", "Sum(u > k, (k, 0, 2))", "Sum(u, (k, 0, True))",
+    ),
+    "number where a truth value belongs": (
+        "u & v", "(u > 0) | 1", "~u", "not 1", "And(u, u > 0)", "Piecewise((u, u), (1, True))",
+    ),
     "not real or not finite": (
         "sqrt(-1)*u", "asin(2)", "log(0)", "0**-1", "Piecewise((1, False))", "1e999"
     ),
@@ -119,59 +110,33 @@ NO_NUMBERS = {
     "uses the function Sum without arguments": ("Sum",),
     "limits of its Sum are not whole": ("Sum(u, (k, 0, v))",),
     "not arithmetic": ("0 < u < 1", "3j", "1or 2"),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(("text", "reason"), [(x, y) for y, z in NO_NUMBERS.items() for x in z])
-def test_what_is_no_real_number(text: str, reason: str) -> None:
-    refused(text, reason)
-
-
-@pytest.mark.parametrize(
-    "name",
-    ["factorial2", "harmonic", "hermite", "FallingFactorial", "Mod", "gamma", "legendre", "re"],
-)
-def test_functions_that_are_not_listed(name: str) -> None:
-    refused(f"u + {name}(3, u)", f"uses {name}, which kernels cannot compute")
-
-
-# --- what SymPy may compute -----------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        f"Sum(u, (k, 0, {MOST_STEPS}))",
-        "Sum(u, (k, 1, 10**9))",
+    **{f"uses {name}, which kernels cannot compute": (f"u + {name}(3, u)",) for name in UNLISTED},
+    # Steps are counted,
+    "more than 10,000 operations|nested too deeply": (
+        f"Sum(u, (k, 0, {MOST_STEPS}))", "Sum(u, (k, 1, 10**9))",
         "Sum(Sum(Sum(u*k*j*i, (k, 1, 999)), (j, 1, 999)), (i, 1, 999))",
         "+".join("u" * (MOST_STEPS // 2)) + "-u*v" * 2,
-    ],
-)
-def test_steps_are_counted(text: str) -> None:
-    refused(text, r"more than 10,000 operations|nested too deeply")
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        f"Abs({LONG})",
-        f"Max({LONG}, u, v)",
-        f"{LONG} < 1",
-        f"Piecewise((u, {LONG} < 1), (v, True))",
-        f"sin({LONG}) + cos({LONG})",
-        f"({LONG})**(1/3)",
-        f"v**({LONG})",
-        f"({LONG}) % 1",
-        "(" * 12 + "u" + "%3 + v)" * 12,
-        "sqrt(1 + " * 60 + "u" + ")" * 60,
+    ),
+    # and questions to SymPy.
+    "than SymPy can examine": (
+        f"Abs({LONG})", f"Max({LONG}, u, v)", f"{LONG} < 1",
+        f"Piecewise((u, {LONG} < 1), (v, True))", f"sin({LONG}) + cos({LONG})",
+        f"({LONG})**(1/3)", f"v**({LONG})", f"({LONG}) % 1",
+        "(" * 12 + "u" + "%3 + v)" * 12, "sqrt(1 + " * 60 + "u" + ")" * 60,
         f"Max({', '.join(f'sin({k}*u)' for k in range(24))})",
         f"Min({', '.join(f'Max(u, cos({k}*u))' for k in range(9))})",
         "Sum(Abs(u - k), (k, 1, 200))",
         "Piecewise(" + ",".join(f"({k}, u < {k})" for k in range(200)) + ")",
-    ],
-)
-def test_questions_to_sympy_are_counted(text: str) -> None:
-    refused(text, "than SymPy can examine")
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "reason"), [(x, y) for y, z in REFUSED.items() for x in z])
+def test_what_is_refused_and_why(text: str, reason: str) -> None:
+    refused(text, reason)
+
+
+# --- what SymPy may compute -----------------------------------------------------------------------
 
 
 def test_constants_cost_nothing_however_many_they_are() -> None:

@@ -181,20 +181,6 @@ def test_extrapolation_is_3_minus_3_1():
 
 
 @pytest.mark.parametrize(
-    ("formula", "points"),
-    [
-        (spline.EDGE_POINT, (0, -HALF, HALF)),
-        (spline.EDGE_POINT_FROM_VERTICES, (-HALF, HALF, -3 * HALF, 3 * HALF)),
-    ],
-)
-def test_edge_points_are_exact_on_quadratics(formula, points):
-    for power in range(3):
-        ends = (Fraction(-HALF) ** power, HALF**power)
-        middle = 2 * Fraction(0) ** power - sum(ends) / 2
-        assert applied(formula, *(Fraction(x) ** power for x in points)) == middle
-
-
-@pytest.mark.parametrize(
     ("formula", "point"), [(spline.BEYOND_EDGE, "b110"), (spline.BEYOND_CORNER, "b200")]
 )
 def test_coefficients_beyond_the_border_give_the_point_on_it(formula, point):

@@ -1,9 +1,6 @@
 """Taylor polynomials: products and compositions, and bounds of their errors, exactly."""
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from types import CodeType
@@ -18,6 +15,8 @@ from gaussmap.symbolic.printer import source_of
 from gaussmap.symbolic.simplify import straight_line
 from hypothesis import given
 from hypothesis import strategies as st
+
+from .terms import Term
 
 u, v = sp.symbols("u v")
 ORDERS = ("0", "u", "v", "uu", "uv", "vv", "uuu", "uuv", "uvv", "vvv")
@@ -125,44 +124,9 @@ def test_radii_are_attained(name):
     assert {f"r{x[1:]}": after[x] - before[x] for x in before} == radii
 
 
-@dataclass(frozen=True)
-class Counted:
-    """A positive number, and the largest number of roundings of the terms it is the sum of."""
-
-    value: Fraction
-    roundings: int = 0
-
-    def _with(self, other: Any, value: Fraction, both: bool) -> Counted:
-        mine, theirs = self.roundings, other.roundings
-        return Counted(value, (mine + theirs if both else max(mine, theirs)) + 1)
-
-    def __add__(self, other: Any) -> Counted:
-        other = other if isinstance(other, Counted) else Counted(Fraction(other))
-        return self._with(other, self.value + other.value, both=False)
-
-    def __mul__(self, other: Any) -> Counted:
-        other = other if isinstance(other, Counted) else Counted(Fraction(other))
-        return self._with(other, self.value * other.value, both=True)
-
-    def __neg__(self) -> Counted:
-        return Counted(-self.value, self.roundings)
-
-    def __sub__(self, other: Any) -> Counted:
-        return self + -1 * other if not isinstance(other, Counted) else self + -other
-
-    def __truediv__(self, other: Any) -> Counted:
-        other = other if isinstance(other, Counted) else Counted(Fraction(other))
-        return self._with(other, self.value / other.value, both=True)
-
-    def __rtruediv__(self, other: Any) -> Counted:
-        return Counted(Fraction(other)) / self
-
-    __radd__, __rmul__ = __add__, __mul__
-
-
 @EACH
 def test_radii_count_the_roundings_of_results(name):
-    values = {x: Counted(Fraction(k + 2, 7)) for k, x in enumerate(names_of(name))}
+    values = {x: Term.of(Fraction(k + 2, 7)) for k, x in enumerate(names_of(name))}
     zero = {x.name: 0 for x in formulas[RADII[name]].in_components().inputs}
     radii = run(RADII[name], zero | {x: y.value for x, y in values.items()} | {"u": Fraction(1)})
     for key, found in run(name, values).items():
