@@ -64,9 +64,12 @@ def test_sampling_loads_no_other_tools_and_no_heavy_libraries() -> None:
 import sys
 import gaussmap as gm
 torus = gm.surfaces.torus()
+heavy = "sympy", "matplotlib", "pandas", "pyvista", "tqdm", "trimesh"
 tools = lambda: {x.split(".")[2] for x in sys.modules if x.startswith("gaussmap.tools.")}
 gm.GaussMap(torus, cells=(16, 16)).points([[0, 0, 1]]).summary()
 print(sorted(tools()))
+gm.sample(torus, normals=gm.icosphere(8))
+print("scipy.spatial" in sys.modules)
 for request in ({"count": 200}, {"coverage": 0.5}, {"angle": 30.0}, {"normals": [[0, 0, 1]]}):
     samples = gm.sample(torus, cells=(16, 16), **request)
 for density in ("gauss", "aligned", "balanced", "uniform"):
@@ -75,12 +78,12 @@ chunks = list(gm.sample_stream(torus, 200, cells=(16, 16)))
 len(chunks), samples.summary(), samples.coverage()
 print(sorted(tools()))
 gm.SupportFunction, gm.curves.sample, gm.directions.cap, gm.gauss_map.Piece, gm.read_samples
-print([x for x in ("sympy", "matplotlib", "pyvista", "tqdm") if x in sys.modules])
-samples.weights()
-print("meshes" in tools())
+samples.weights(), samples.mesh()
+print("meshes" in tools(), "scipy.spatial" in sys.modules, [x for x in heavy if x in sys.modules])
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines() == ["[]", "['density', 'sampling']", "[]", "True"]
+    printed = ["[]", "False", "['density', 'sampling']", "True True []"]
+    assert done.stdout.splitlines() == printed
 
 
 def test_formulas_by_name() -> None:

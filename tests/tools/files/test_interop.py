@@ -1,6 +1,5 @@
 """Samples and meshes as objects of other libraries, which are not needed until then."""
 
-import subprocess
 import sys
 from collections.abc import Callable
 from typing import Any
@@ -115,16 +114,3 @@ def test_a_library_that_is_not_installed(library, extra, convert, monkeypatch):
 def test_points_are_needed(convert):
     with pytest.raises(gm.errors.MissingFieldError, match="add 'points' to the fields"):
         getattr(samples(fields=("uv",)), convert)()
-
-
-@pytest.mark.slow
-def test_meshes_load_what_triangulates_and_nothing_heavier():
-    code = (
-        "import sys, gaussmap as gm;"
-        "samples = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(8));"
-        "before = 'scipy.spatial' in sys.modules; samples.mesh();"
-        "heavy = ('sympy', 'pandas', 'pyvista', 'trimesh', 'matplotlib');"
-        "print(before, 'scipy.spatial' in sys.modules, [x for x in heavy if x in sys.modules])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "False True []"

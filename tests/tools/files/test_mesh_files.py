@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from gaussmap.tools.files.formats import MESH_SUFFIXES
 
+from .made import ply_by_trimesh
+
 
 def noise(count: int = 5000) -> gm.Mesh:
     """Vertices of all sizes, and triangles between any of them; the first one has no area."""
@@ -38,11 +40,9 @@ def test_obj_holds_every_bit(tmp_path):
 
 
 def test_ply_holds_every_bit(tmp_path):
-    trimesh = pytest.importorskip("trimesh")
     mesh = noise()
     mesh.write(tmp_path / "a.ply")
-    with open(tmp_path / "a.ply", "rb") as file:
-        raw = trimesh.exchange.ply.load_ply(file)["metadata"]["_ply_raw"]
+    raw = ply_by_trimesh(tmp_path / "a.ply")
     expected = np.hstack([mesh.vertices, mesh.normals, mesh.uv])
     vertices = raw["vertex"]["data"]
     assert vertices.dtype.names == ("x", "y", "z", "nx", "ny", "nz", "u", "v")

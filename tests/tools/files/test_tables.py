@@ -12,37 +12,13 @@ from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.files import tables
 from gaussmap.tools.files.formats import check_samples_target
 
+from .made import columns_of, make
+
 
 def noise(count: int, dtype: Any = np.float64) -> gm.Samples:
-    """Samples of numbers of all sizes, some of which are neither finite nor normal."""
-    rng = np.random.default_rng(count)
-    sizes = 10.0 ** rng.integers(-300 if dtype == np.float64 else -40, 30, (count, 3))
-    points = (rng.normal(size=(count, 3)) * sizes).astype(dtype)
-    points[0], points[1] = (-0.0, 5e-324, 0.1), (1e22, 1e-5, 123456789012345680.0)
-    curvature = rng.normal(size=count).astype(dtype)
-    curvature[:3] = np.inf, -np.inf, np.nan
-    return gm.Samples(
-        points=points,
-        uv=rng.random((count, 2)).astype(dtype),
-        gaussian_curvature=curvature,
-        normal_index=rng.integers(-1, 1 << 62, count),
-        on_surface=rng.random(count) < 0.5,
-        report=SamplingReport("noise", count, count, 1, 0.25, 0),
-    )
-
-
-NAMES = {"points": "x y z", "normals": "nx ny nz", "uv": "u v"}
-
-
-def columns_of(samples: gm.Samples) -> dict[str, np.ndarray]:
-    """Return the columns by their names."""
-    return {
-        name: column
-        for field, array in samples.arrays().items()
-        for name, column in zip(
-            NAMES.get(field, field).split(), array.reshape(len(array), -1).T, strict=True
-        )
-    }
+    """Samples with truth values and the longest indices, too."""
+    index = np.linspace(-1, 2.0**62, count).astype(np.int64)
+    return make(count, dtype=dtype, normal_index=index, on_surface=np.arange(count) % 3 > 0)
 
 
 def assert_equal(column: Any, wanted: np.ndarray) -> None:
