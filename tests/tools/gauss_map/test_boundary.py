@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ...nets import normals_at, vectors_of
 from ...products import covering
-from .nets import normals_at, vectors_of
 
 Array = NDArray[np.float64]
 

@@ -1,7 +1,5 @@
 """Gaussian images: against definitions in exact arithmetic, quadrature, and topology."""
 
-from fractions import Fraction
-
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -9,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from ...nets import exact_place, exact_sign, net_of, normals_at, vectors_of
 from ...refusals import refused
-from .nets import net_of, normals_at, quadratic_forms, vectors_of
 
 Array = NDArray[np.float64]
 
@@ -118,27 +116,16 @@ def test_area_is_the_share_of_the_sphere_that_it_contains(seed: int) -> None:
 # --- membership, exactly --------------------------------------------------------------------------
 
 
-def by_definition(net: Array, n: list[int]) -> bool:
-    """Solve n·p_u = n·p_v = 0 in fractions; D must not vanish."""
-    vectors = vectors_of(net.astype(int).astype(object) * Fraction(1))
-    A, B, C, P, Q = quadratic_forms(vectors, n)
-    determinant = A * C - B * B
-    u, v = (B * Q - C * P) / Fraction(determinant), (B * P - A * Q) / Fraction(determinant)
-    towards = sum(x * y for x, y in zip(normals_at(vectors, u, v), n, strict=True))
-    return bool(u >= 0 and v >= 0 and u + v <= 1 and towards > 0)
-
-
 @given(
     seed=st.integers(0, 10**6),
     normals=st.lists(st.tuples(*[st.integers(-4, 4)] * 3), min_size=5, max_size=20),
 )
 def test_membership_is_that_of_the_definition(seed: int, normals: list) -> None:
     net = np.random.default_rng(seed).integers(-3, 4, (6, 3)).astype(float)
-    forms = [quadratic_forms(vectors_of(net), n) for n in normals]
-    asked = [n for n, (A, B, C, *_) in zip(normals, forms, strict=True) if A * C != B * B]
+    asked = [n for n in normals if exact_sign(net, n)]
     if asked:
         found = gm.gauss_map.GaussianImage.of_patch(net).contains(asked)
-        assert found.tolist() == [by_definition(net, list(n)) for n in asked]
+        assert found.tolist() == [exact_place(net, n) is not None for n in asked]
 
 
 def test_border_belongs_to_the_image_and_what_lies_beyond_does_not() -> None:

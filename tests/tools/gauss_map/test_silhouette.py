@@ -1,6 +1,7 @@
 """Silhouettes: perpendicular, complete, exact on sphere and torus, aligned directions included."""
 
 import pickle
+from collections.abc import Callable
 from typing import Any
 
 import gaussmap as gm
@@ -87,20 +88,23 @@ def test_every_normal_has_its_points_once(direction: Any, normals: int, cells: A
     assert (sheets[generic] == 2).all()
 
 
+def assert_complete(samples: gm.Samples, f: Callable[[Array, Array], Array], most: float) -> None:
+    """Check that there is a sample near each place of the waves where f changes sign along u."""
+    u, v = np.meshgrid(np.linspace(-1, 1, 100), np.linspace(-1, 1, 41)[1:-1], indexing="ij")
+    values = f(u, v)
+    i, j = np.nonzero(values[1:] * values[:-1] < 0.0)
+    middles = np.stack([(u[i, j] + u[i + 1, j]) / 2.0, v[i, j]], axis=1)
+    assert len(middles) > 20
+    assert np.linalg.norm(middles[:, None] - samples.uv, axis=2).min(axis=1).max() < most
+
+
 def test_its_normals_are_those_of_the_spline_there() -> None:
     """N·d = 0 at the parameters; and where N·d changes its sign along u, there is a sample."""
     spline = gm.fit(gm.surfaces.wavy_graph(), (24, 24))
     axis = unit([1.0, 0.3, 0.15])
     samples = gm.silhouette(spline, axis, count=3000)
     assert np.abs(spline.normals(*samples.uv.T) @ axis).max() < 1e-9
-    (u0, u1), (v0, v1) = spline.domain
-    u, v = np.meshgrid(np.linspace(u0, u1, 100), np.linspace(v0, v1, 41)[1:-1], indexing="ij")
-    along = spline.normals(u, v) @ axis
-    i, j = np.nonzero(along[1:] * along[:-1] < 0)
-    assert len(i) > 20
-    middles = np.stack([(u[i, j] + u[i + 1, j]) / 2, v[i, j]], axis=1)
-    distances = np.linalg.norm(middles[:, None] - samples.uv, axis=2).min(axis=1)
-    assert distances.max() < 0.05 * (u1 - u0)
+    assert_complete(samples, lambda u, v: spline.normals(u, v) @ axis, 0.1)
 
 
 def test_samples_are_ordered_by_normal_and_then_by_patch() -> None:
@@ -243,6 +247,7 @@ def test_what_is_made_of_a_silhouette() -> None:
     some = gm.silhouette(TORUS, [1, 2, 3], count=100, fields=("points",), dtype=np.float32)
     assert some.fields == ("points",)
     assert (some.points == outline.points.astype(np.float32)).all()
+    refused("must be a Mesh", outline.visible, by=TORUS)
 
 
 # --- count, fields, warnings ----------------------------------------------------------------------
@@ -269,29 +274,30 @@ def test_no_silhouette() -> None:
     assert samples.polylines == ()
 
 
+NO_COUNT = "count must be a whole number of at least 1"
+
+
 @pytest.mark.parametrize(
-    ("direction", "message"),
+    ("asked", "message"),
     [
-        ([0, 0, 0], "^direction is the zero vector, which has no direction"),
-        ([0, np.nan, 0], "^direction holds NaN or infinity"),
-        ([[0, 0, 1]], r"^direction must have the shape \(3,\), not \(1, 3\)"),
-        ("z", "^direction must be an array of real numbers"),
+        ({"direction": [0, 0, 0]}, "^direction is the zero vector, which has no direction"),
+        ({"direction": [0, np.nan, 0]}, "^direction holds NaN or infinity"),
+        ({"direction": [[0, 0, 1]]}, r"^direction must have the shape \(3,\), not \(1, 3\)"),
+        ({"direction": "z"}, "^direction must be an array of real numbers"),
+        *(({"direction": [0, 0, 1], "count": x}, NO_COUNT) for x in (0, -1, 1.5, None, "9")),
+        ({}, "either a direction or a viewpoint"),
+        ({"direction": (1, 2, 3), "viewpoint": (1, 2, 3)}, "either"),
+        ({"viewpoint": (1, 2)}, "viewpoint"),
     ],
 )
-def test_directions_that_are_none(direction: Any, message: str) -> None:
-    refused(message, gm.silhouette, TORUS, direction, count=10)
+def test_what_is_refused(asked: dict[str, Any], message: str) -> None:
+    refused(message, gm.silhouette, TORUS, **asked)
 
 
 @pytest.mark.parametrize("scale", [5e-324, 1e-300, 1e300])
 def test_directions_of_any_length(scale: float) -> None:
     tiny = gm.silhouette(TORUS, [0, 0, scale], count=8, cells=(8, 8))
     assert (tiny.points == gm.silhouette(TORUS, [0, 0, 1], count=8, cells=(8, 8)).points).all()
-
-
-@pytest.mark.parametrize("count", [0, -1, 1.5, None, "9"])
-def test_counts_that_are_none(count: Any) -> None:
-    with pytest.raises(gm.errors.InputError, match="count must be a whole number of at least 1"):
-        gm.silhouette(TORUS, [0, 0, 1], count=count)
 
 
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band"])
@@ -348,14 +354,13 @@ def test_a_sphere_from_a_viewpoint() -> None:
 
 def test_contours_are_complete_on_a_grid() -> None:
     """Where N·(x − p) changes its sign along u, there is a point."""
+
+    def towards(u: Array, v: Array) -> Array:
+        x, xu, xv = np.moveaxis(gm.surfaces.wavy_graph().jets(u.ravel(), v.ravel()), 1, 0)[:3]
+        return np.einsum("kx,kx->k", np.cross(xu, xv), x - VIEWPOINT).reshape(u.shape)
+
     outline = gm.silhouette(gm.surfaces.wavy_graph(), viewpoint=VIEWPOINT, count=2_000)
-    u, v = np.meshgrid(np.linspace(-1, 1, 100), np.linspace(-1, 1, 41)[1:-1], indexing="ij")
-    x, xu, xv = np.moveaxis(gm.surfaces.wavy_graph().jets(u.ravel(), v.ravel()), 1, 0)[:3]
-    values = np.einsum("kx,kx->k", np.cross(xu, xv), x - VIEWPOINT).reshape(u.shape)
-    i, j = np.nonzero(values[1:] * values[:-1] < 0.0)
-    middles = np.stack([(u[i, j] + u[i + 1, j]) / 2.0, v[i, j]], axis=1)
-    assert len(middles) > 20
-    assert np.linalg.norm(middles[:, None] - outline.uv, axis=2).min(axis=1).max() < 0.05
+    assert_complete(outline, towards, 0.05)
 
 
 def test_far_viewpoints_are_directions_and_trims_cut() -> None:
@@ -416,10 +421,3 @@ def test_nothing_is_visible_of_no_points() -> None:
     with pytest.warns(gm.GaussmapWarning, match="0 samples"):
         outline = gm.silhouette("plane", viewpoint=(1, 1, 5), cells=(8, 8))
     assert outline.visible().shape == (0,)
-
-
-def test_refusals_of_views() -> None:
-    refused("either a direction or a viewpoint", gm.silhouette, TORUS)
-    refused("either", gm.silhouette, TORUS, (1, 2, 3), viewpoint=(1, 2, 3))
-    refused("viewpoint", gm.silhouette, TORUS, viewpoint=(1, 2))
-    refused("must be a Mesh", gm.silhouette(TORUS, (1, 2, 3), count=10).visible, by=TORUS)

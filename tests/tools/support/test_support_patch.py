@@ -1,6 +1,5 @@
 """The support function of one patch: formula, domain decided exactly, boundary included."""
 
-from fractions import Fraction
 from itertools import product
 from typing import Any
 
@@ -12,6 +11,7 @@ from gaussmap.symbolic import BezierTriangle
 from gaussmap.symbolic.expression import NORMAL
 from numpy.typing import NDArray
 
+from ...nets import exact_place, exact_sign, normals_at, quadratic_forms, vectors_of
 from ...refusals import refused
 
 Array = NDArray[np.float64]
@@ -27,53 +27,12 @@ def unit(normals: Array) -> Array:
     return gm.SupportFunction.from_sympy("1").branches(normals).normals
 
 
-# Half of the derivatives of (10) at u = v = 0, by uu, uv, vv, u, v, in the control points.
-DERIVATIVES = [
-    (1, 0, 1, 0, -2, 0), (0, 0, 1, 1, -1, -1), (0, 1, 1, 0, 0, -2),
-    (0, 0, -1, 0, 1, 0), (0, 0, -1, 0, 0, 1),
-]  # fmt: skip
-
-
-def exact(net: list[list[Any]], normal: Array) -> tuple[list[Any], list[Fraction]]:
-    """Return the derivatives as vectors of fractions, and their products with the normal."""
-    n = [Fraction(float(x)) for x in normal]
-    vectors = [
-        [sum(w * Fraction(b[x]) for w, b in zip(weights, net, strict=True)) for x in range(3)]
-        for weights in DERIVATIVES
-    ]
-    forms = [sum((x * y for x, y in zip(s, n, strict=True)), start=Fraction(0)) for s in vectors]
-    return vectors, forms
-
-
-def exact_sign(net: list[list[Any]], normal: Array) -> int:
-    """Return the sign of D, which is that of the curvature."""
-    A, B, C, _, _ = exact(net, normal)[1]
-    return (A * C > B * B) - (A * C < B * B)
-
-
-def exact_place(net: list[list[Any]], normal: Array) -> tuple[Fraction, Fraction] | None:
-    """Solve n·p_u = n·p_v = 0 in fractions; None unless the closed patch has this normal."""
-    (a, b, c, d, e), (A, B, C, P, Q) = exact(net, normal)
-    D = A * C - B * B
-    if D == 0:
-        return None
-    u, v = (B * Q - C * P) / D, (B * P - A * Q) / D
-    if min(u, v, 1 - u - v) < 0:
-        return None
-    p_u = [a[x] * u + b[x] * v + d[x] for x in range(3)]
-    p_v = [b[x] * u + c[x] * v + e[x] for x in range(3)]
-    N = [p_u[y] * p_v[z] - p_u[z] * p_v[y] for y, z in ((1, 2), (2, 0), (0, 1))]
-    return (
-        (u, v) if sum(x * Fraction(float(y)) for x, y in zip(N, normal, strict=True)) > 0 else None
-    )
-
-
 @pytest.mark.compiled
 @pytest.mark.parametrize("net", [OF_12, MIXED], ids=["formula 12", "mixed"])
 @pytest.mark.parametrize("factor", [pytest.param(1.0, marks=pytest.mark.slow), 0.1])
 @pytest.mark.quick_for("mixed")
 def test_membership_and_parameters_are_exact(net: list[list[Any]], factor: float) -> None:
-    points = (factor * np.array(net)).tolist()
+    points = factor * np.array(net)
     normals = unit(NORMALS)
     branches = gm.SupportFunction.of_patch(points).branches(normals)
     places = [exact_place(points, n) for n in normals]
@@ -143,15 +102,14 @@ def test_next_to_a_parabolic_line() -> None:
     """All of a parabolic line has one normal: near it, only exact arithmetic knows D, U, V, W."""
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
     b = 0.1 * np.array(MIXED) @ (np.sign(np.linalg.det(turn)) * turn).T
-    a, m, c = (np.array(weights) @ b for weights in DERIVATIVES[:3])
+    vectors = vectors_of(b)
 
     def normal(u: float) -> Array:
-        p_u, p_v = a * u + m * (1 - u) / 2, m * u + c * (1 - u) / 2
-        return np.cross(p_u + b[4] - b[2], p_v + b[5] - b[2])
+        return normals_at(vectors, u, (1 - u) / 2)
 
     def curvature(u: float) -> float:
-        n = normal(u)
-        return float((n @ a) * (n @ c) - (n @ m) ** 2)
+        A, B, C, *_ = quadratic_forms(vectors, normal(u))
+        return A * C - B * B
 
     low, high = 0.0, 1.0
     assert curvature(low) * curvature(high) < 0
@@ -162,10 +120,10 @@ def test_next_to_a_parabolic_line() -> None:
     steps = np.random.default_rng(1).uniform(-1.0, 1.0, (500, 3))
     normals = unit(near + steps * np.logspace(-16, -10, 500)[:, None])
     branches = gm.SupportFunction.of_patch(b).branches(normals)
-    places = [exact_place(b.tolist(), n) for n in normals]
+    places = [exact_place(b, n) for n in normals]
     assert branches.normal_index.tolist() == [k for k, x in enumerate(places) if x is not None]
     assert len(branches) > 20
-    assert (branches.elliptic == [exact_sign(b.tolist(), n) > 0 for n in branches.normals]).all()
+    assert (branches.elliptic == [exact_sign(b, n) > 0 for n in branches.normals]).all()
     assert 0 < np.count_nonzero(branches.elliptic) < len(branches)
 
 

@@ -1,6 +1,7 @@
 """Patches by their control points b200, b020, b002, b110, b101, b011, in any exact numbers."""
 
 from collections.abc import Iterable
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,3 +32,26 @@ def normals_at(vectors: NDArray, u: ArrayLike, v: ArrayLike) -> NDArray:
 def quadratic_forms(vectors: NDArray, normal: Iterable) -> list:
     """Return A, B, C, P, Q, the products of a, b, c, d, e with a normal."""
     return [sum(x * y for x, y in zip(normal, z, strict=True)) for z in vectors]
+
+
+def in_fractions(numbers: ArrayLike) -> NDArray:
+    """Return the same numbers as fractions, in an array of objects."""
+    return np.vectorize(Fraction, otypes=[object])(numbers)
+
+
+def exact_sign(net: ArrayLike, normal: ArrayLike) -> int:
+    """Return the sign of D = A C − B², which is that of the curvature."""
+    A, B, C, *_ = quadratic_forms(vectors_of(in_fractions(net)), in_fractions(normal))
+    return (A * C > B * B) - (A * C < B * B)
+
+
+def exact_place(net: ArrayLike, normal: ArrayLike) -> tuple[Fraction, Fraction] | None:
+    """Solve n·p_u = n·p_v = 0 in fractions; None unless the closed patch has this normal."""
+    vectors, n = vectors_of(in_fractions(net)), in_fractions(normal)
+    A, B, C, P, Q = quadratic_forms(vectors, n)
+    D = A * C - B * B
+    if D == 0:
+        return None
+    u, v = (B * Q - C * P) / D, (B * P - A * Q) / D
+    outside = min(u, v, 1 - u - v) < 0
+    return None if outside or normals_at(vectors, u, v) @ n <= 0 else (u, v)
