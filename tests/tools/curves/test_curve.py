@@ -38,6 +38,7 @@ def test_sympy_and_callable_are_the_same_curve():
     places = np.linspace(0, 6, 17).reshape(1, 17)
     for curve in (by_text, by_symbol):
         assert (curve.domain, curve.periodic) == (TURN, True)
+        assert gm.curves.fit(curve).pieces == 64
         np.testing.assert_allclose(curve.evaluate(places), ellipse(places), rtol=0, atol=4 * ULP)
 
 
@@ -133,11 +134,6 @@ def test_closed_points_that_nearly_repeat_the_first(part, repeats):
         assert gm.curves.fit(gm.curves.Curve.from_points(points, closed=True)).pieces == 5
 
 
-def test_a_curve_has_64_pieces_unless_told():
-    circle = gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), True)
-    assert gm.curves.fit(circle).pieces == 64
-
-
 # --- fitting --------------------------------------------------------------------------------------
 
 
@@ -220,21 +216,6 @@ def test_parameters_outside():
 
 
 # --- how the normal turns -------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("position", "turning", "inflections"),
-    [(("cos(t)", "sin(t)"), 1, 0), (("cos(t)", "-sin(t)"), -1, 0), (("sin(t)", "sin(2*t)"), 0, 2),
-     (("(1 + 2*cos(t))*cos(t)", "(1 + 2*cos(t))*sin(t)"), 2, 0),
-     (("(1 + cos(5*t)/5)*cos(t)", "(1 + cos(5*t)/5)*sin(t)"), 1, 10)],
-    ids=["circle", "clockwise", "eight", "limacon", "star"],
-)  # fmt: skip
-@pytest.mark.parametrize("pieces", [48, 63, 200])
-def test_turning_number_and_inflections(position, turning, inflections, pieces):
-    spline = gm.curves.fit(gm.curves.Curve.from_sympy(position, "t", (0, "2*pi"), True), pieces)
-    assert spline.turning_number == turning
-    assert spline.turning_angles.sum() == pytest.approx(2 * np.pi * turning, abs=1e-12)
-    assert len(spline.inflections) == inflections
 
 
 def test_inflections_are_where_the_curvature_changes_its_sign():

@@ -289,14 +289,11 @@ def test_one_normal() -> None:
 
 
 @pytest.mark.kernels
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
+def test_what_is_refused() -> None:
+    for arguments, message in (
         ((ELLIPSOID, 3, NORMALS), "two of Surface, Spline and SupportFunction, not int"),
         ((NORMALS, ELLIPSOID, NORMALS), "SupportFunction, not ndarray"),
-    ],
-)
-def test_what_is_refused(arguments: Any, message: str) -> None:
-    refused(message, gm.convolve, *arguments)
-    with pytest.raises(gm.errors.InputError, match="neither of these is a Surface"):
-        gm.convolve(ELLIPSOID, ELLIPSOID, NORMALS, cells=(8, 8))
+    ):
+        refused(message, gm.convolve, *arguments)
+    words = "neither of these is a Surface"
+    refused(words, gm.convolve, ELLIPSOID, TURNED, NORMALS, cells=(8, 8))

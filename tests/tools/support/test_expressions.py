@@ -55,12 +55,5 @@ def test_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
         np.testing.assert_array_equal(getattr(whole, name), getattr(by_blocks, name))
 
 
-def test_constants() -> None:
-    """Of what does not depend on the normal, functions return numbers and no arrays."""
-    branches = gm.SupportFunction.from_sympy("n_x").branches(NORMALS)
-    assert (branches.points == [1.0, 0.0, 0.0]).all()
-    assert not branches.hessian.any()
-
-
 def test_where_functions_of_math_raise_errors() -> None:
     assert len(gm.SupportFunction.from_sympy("log(n_x)").branches(-np.eye(3)).points) == 0

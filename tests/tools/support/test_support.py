@@ -64,7 +64,7 @@ def test_constant_is_a_sphere(h: object) -> None:
 
 
 def test_linear_is_a_point() -> None:
-    """Both radii are 0, exactly, and the curvature is infinite."""
+    """Both radii are 0, exactly, and the curvature is infinite; functions return no arrays."""
     branches = given("3*n_x - n_y/4 + 1e6*n_z").branches(NORMALS)
     assert (branches.points == [3.0, -0.25, 1e6]).all()
     assert not branches.hessian.any()

@@ -97,6 +97,10 @@ def test_operations(call: Callable[..., Any], value: Any, message: str) -> None:
 
 
 def test_only_support_functions_can_be_added() -> None:
-    for other in (1.0, None, "n_x", gm.surfaces.torus()):
-        with pytest.raises(TypeError):
-            SPHERE + other  # pyright: ignore
+    several: Any = sum([SPHERE, SPHERE, SPHERE])
+    assert several.branches([[0.0, 0.0, 1.0]]).support.tolist() == [3.0]
+    others: Any = (1.0, None, "n_x", gm.surfaces.torus())
+    for other in others:
+        for one, two in ((SPHERE, other), (other, SPHERE)):
+            with pytest.raises(TypeError):
+                _ = one + two
