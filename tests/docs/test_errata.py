@@ -1,11 +1,12 @@
 """The pages in docs/ that a script writes are what the script gives."""
 
-import re
 from pathlib import Path
 
 import pytest
 import sympy as sp
 from gaussmap.docs import errata, orders, poles
+
+from .pages import tables
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -27,13 +28,6 @@ def test_lines_are_not_those_of_another_patch():
     q, rho, _ = errata.lines_of({**vectors, "d": vectors["e"], "e": vectors["d"]})
     product = sp.resultant(q.as_expr(), errata.u + errata.tau * errata.v + rho, errata.tau)
     assert not sp.cancel(cubic / product).is_number
-
-
-def tables(page: str) -> list[list[list[str]]]:
-    """Return the tables of a page in Markdown: rows of cells, without the line of dashes."""
-    blocks = re.findall(r"(?:^\|.*\|\n)+", page, re.MULTILINE)
-    rows = [[line.strip("|").split("|") for line in block.splitlines()] for block in blocks]
-    return [[[x.strip(" `") for x in row] for row in (block[0], *block[2:])] for block in rows]
 
 
 def test_orders_have_a_row_for_each_surface():

@@ -1,9 +1,10 @@
 """The figures of the README are those of the pages in docs/."""
 
-import re
 from pathlib import Path
 
 from gaussmap.benchmarks.peers.forms import FORMS
+
+from .pages import tables
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -14,29 +15,14 @@ MESH_OF = {
 }
 
 
-def tables(page: str) -> list[dict[str, list[list[str]]]]:
-    """Return the rows of each table of a page, the cells after the first by the first one."""
-    found = []
-    for block in re.findall(r"(?:^\|.*\n)+", page, re.MULTILINE):
-        table: dict[str, list[list[str]]] = {}
-        for line in block.splitlines():
-            first, *cells = (x.strip() for x in line.strip("|").split(" | "))
-            table.setdefault(first.strip(), []).append(cells)
-        found.append(table)
-    return found
-
-
 def of_quality(surface: int) -> list[dict[str, dict[str, str]]]:
     """Return the tables of a surface in docs/quality.md: cells by title and column."""
     page = (ROOT / "docs" / "quality.md").read_text(encoding="utf-8")
     section = page.split(f"## {FORMS[surface].label}\n")[1].split("\n## ")[0]
-    found = []
-    for table in re.findall(r"(?:^\|.*\n)+", section, re.MULTILINE):
-        header, *rows = (
-            [x.strip() for x in line.strip("|").split(" | ")] for line in table.splitlines()
-        )
-        found.append({title: dict(zip(header[1:], cells, strict=True)) for title, *cells in rows})
-    return found
+    return [
+        {title: dict(zip(header[1:], cells, strict=True)) for title, *cells in rows}
+        for header, *rows in tables(section)
+    ]
 
 
 def figures(title: str, surface: int) -> tuple[str, str, str, str]:
@@ -47,16 +33,15 @@ def figures(title: str, surface: int) -> tuple[str, str, str, str]:
         E, G, rate = (points[title][x] for x in ("E", "G", "points/s"))
     else:
         page = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
-        compared = tables(page.split("## Compared with other packages")[1])
-        (rate, E, G) = (compared[surface][title][0][k] for k in (2, -2, -1))
+        compared = tables(page.split("## Compared with other packages")[1])[surface]
+        rate, E, G = next([x[k] for k in (3, -2, -1)] for x in compared if x[0] == title)
     return E, G, mesh, rate
 
 
 def test_figures_are_those_of_the_pages() -> None:
-    (table,) = (x for x in tables(README) if "E / G / M" in x)
-    rows = {title: cells for title, (cells,) in table.items() if not title.startswith((":", "E /"))}
+    (rows,) = (rows for header, *rows in tables(README) if header[0] == "E / G / M")
     assert len(rows) == 6
-    for title, (*surfaces, speed) in rows.items():
+    for title, *surfaces, speed in rows:
         for k, cell in enumerate(surfaces):
             assert tuple(cell.replace("*", "").split(" / ")) == figures(title, k)[:3], (title, k)
         assert speed.replace("*", "") == figures(title, 0)[3], title

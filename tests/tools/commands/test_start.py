@@ -41,18 +41,6 @@ def test_interrupted_while_importing(module: str) -> None:
     assert run(code) == (130, "", "gaussmap: interrupted\n")
 
 
-@pytest.mark.slow
-def test_texts_of_surfaces_take_no_derivation() -> None:
-    code = """
-import sys
-import gaussmap as gm
-gm.Surface.from_sympy(("u", "v", "u*v"), "uv", ((0, 1), (0, 1)))
-print(*sorted(x for x in sys.modules if x.startswith("gaussmap.symbolic")))
-assert "envelope" in gm.symbolic.formulas, gm.symbolic.BezierTriangle
-"""
-    assert run(code) == (0, "gaussmap.symbolic gaussmap.symbolic.reading\n", "")
-
-
 @posix
 def test_who_ignores_interrupts_goes_on_doing_so() -> None:
     code = INTERRUPTED.format(module="numba", before="signal.signal(signal.SIGINT, signal.SIG_IGN)")

@@ -10,19 +10,15 @@ import pytest
 from gaussmap.tools.pictures.scene import scene_of, view
 from matplotlib import image
 from matplotlib.figure import Figure
-from matplotlib.text import Text
 from mpl_toolkits.mplot3d.art3d import Path3DCollection
 
 from ...refusals import refused
+from .made import texts
 
 
 @pytest.fixture(scope="module")
 def samples() -> gm.Samples:
     return gm.sample(gm.fit(gm.surfaces.torus(), cells=(16, 16)), 300)
-
-
-def texts(figure: Figure) -> set[str]:
-    return {x.get_text() for x in figure.findobj(Text)}  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def drawn(figure: Figure) -> np.ndarray:

@@ -9,13 +9,7 @@ import numpy as np
 import pytest
 
 from ...refusals import refused
-
-
-def texts(figure: Any) -> set[str]:
-    from matplotlib.text import Text
-
-    figure.canvas.draw()
-    return {x.get_text() for x in figure.findobj(Text) if x.get_text()}
+from .made import texts
 
 
 def test_units_are_those_of_the_part(parts: ModuleType) -> None:

@@ -220,20 +220,6 @@ def test_a_normal_that_is_asked_twice_is_answered_twice():
     assert (points == expected).all()
 
 
-@pytest.mark.parametrize("exponent", [-300, -1, 1, 300])
-@pytest.mark.parametrize("name", ["torus", "moebius_band", "sphere"])
-def test_powers_of_two_change_no_bit(name, exponent):
-    surface, factor = gm.surfaces.surface(name), 2.0**exponent
-    plain, scaled = (
-        gm.sample(x, normals=gm.icosphere(6), cells=(12, 12), on="spline")
-        for x in (surface, moved(surface, factor))
-    )
-    powers = {"points": 1, "support": 1, "gaussian_curvature": -2, "mean_curvature": -1}
-    for array in plain.fields:
-        expected = getattr(plain, array) * factor ** powers.get(array, 0)
-        np.testing.assert_array_equal(getattr(scaled, array), expected)
-
-
 @pytest.mark.parametrize("count", [None, 500])
 def test_arrays_and_surfaces_are_left_alone(count):
     normals = np.array([[0.0, 0.0, 2.0], [0.0, 3.0, 0.0], [1.0, 1.0, 1.0]])
@@ -248,20 +234,6 @@ def test_arrays_and_surfaces_are_left_alone(count):
     samples.normals[:] = 0.0
     assert np.abs(again.points).max() > 1.0
     np.testing.assert_array_equal(gm.sample(spline, **asked).points, again.points)
-
-
-def test_sizes_at_the_end_of_double_precision():
-    """The same normals, and curvatures that overflow with their sign; smaller ones are refused."""
-    plain = gm.sample(TORUS, normals=gm.icosphere(5), cells=(16, 16))
-    for factor in (2.0**-990, 2.0**990):
-        samples = gm.sample(moved(TORUS, factor), normals=gm.icosphere(5), cells=(16, 16))
-        assert np.isfinite(samples.points).all()
-        assert len(samples) == len(plain)
-        assert samples.elliptic.sum() == plain.elliptic.sum()
-        assert not np.isnan(samples.gaussian_curvature).any()
-        assert not np.isnan(samples.mean_curvature).any()
-    with pytest.raises(gm.errors.SurfaceError, match="too small to compute with"):
-        gm.sample(moved(TORUS, 2.0**-1030), normals=gm.icosphere(5), cells=(16, 16))
 
 
 # --- density --------------------------------------------------------------------------------------

@@ -191,17 +191,6 @@ def test_patches_of_a_spline_have_its_branches() -> None:
 # --- sizes, and what is no patch ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("exponent", [-960, -40, 40, 960])
-def test_scaling_by_powers_of_two_changes_nothing(exponent: int) -> None:
-    normals = unit(NORMALS)
-    net = np.array(MIXED, dtype=float)
-    base = gm.SupportFunction.of_patch(net).branches(normals)
-    moved = gm.SupportFunction.of_patch(np.ldexp(net, exponent)).branches(normals)
-    assert (moved.normal_index == base.normal_index).all()
-    assert (moved.uv == base.uv).all()
-    assert (moved.points == np.ldexp(base.points, exponent)).all()
-
-
 def test_translation_by_whole_numbers_changes_nothing() -> None:
     normals = unit(NORMALS)
     base = gm.SupportFunction.of_patch(MIXED).branches(normals)
