@@ -37,17 +37,6 @@ def binary_cubic(vectors) -> Any:
     return k30 * s**3 + k21 * s**2 * t + k12 * s * t**2 + k03 * t**3
 
 
-def lines_at(vectors, direction) -> list[tuple[Any, Any, Any]]:
-    """Return the lines of a direction by each of the three normals that do not vanish."""
-    ends: dict[str, Any] = dict(zip("st", direction, strict=True))
-    normals = expanded(gaussian_image.PARABOLIC_NORMAL, vectors, **ends)
-    names = ("n_x", "n_y", "n_z")
-    triples = [normals[3 * k : 3 * k + 3] for k in range(3)]
-    rows = [dict(zip(names, x, strict=True)) for x in triples if any(x)]
-    found = [expanded(gaussian_image.PARABOLIC_LINE, vectors, **row, **ends) for row in rows]
-    return [(x[0], x[1], x[2]) for x in found]
-
-
 @pytest.fixture(params=[0, 1, *(pytest.param(x, marks=pytest.mark.slow) for x in (2, 3))])
 def generator(request) -> random.Random:
     return random.Random(request.param)
@@ -63,51 +52,24 @@ def test_binary_cubic_is_the_determinant(generator):
 
 
 def test_the_line_of_every_root_has_one_normal_and_there_the_cubic_vanishes(generator):
-    """For a symbolic direction (s, 1), on the line: both are multiples of the cubic in s."""
+    """For a symbolic direction (s, 1), by each of the three normals that the formula offers.
+
+    What has to vanish on the line is a multiple of the binary cubic.
+    """
     a, b, c, d, e = vectors = [random_vector(generator) for _ in NAMES]
-    normal: Any = sp.Matrix(expanded(gaussian_image.PARABOLIC_NORMAL, vectors, s=s, t=1)[:3])
-    more: dict[str, Any] = dict(zip(("n_x", "n_y", "n_z"), normal, strict=True))
-    l_u, l_v, l_1 = expanded(gaussian_image.PARABOLIC_LINE, vectors, **more, s=s, t=1)
+    normals = expanded(gaussian_image.PARABOLIC_NORMAL, vectors, s=s, t=1)
     in_s = sp.Poly(binary_cubic(vectors).subs(t, 1), s)
     N = (a * u + b * v + d).cross(b * u + c * v + e)
-    for expression in (cubic_of(vectors), *N.cross(normal)):
-        on_line = sp.numer(sp.together(expression.subs(v, -(l_u * u + l_1) / l_v)))
-        assert all(sp.rem(sp.Poly(x, s), in_s).is_zero for x in sp.Poly(on_line, u).all_coeffs())
-
-
-def rational_patch(generator: random.Random, lines: list[Any]) -> list[Any]:
-    """Return vectors whose binary cubic has the given rational directions.
-
-    With a, b, c the unit vectors, n = (s², st, t²): t n·d − s n·e is any cubic by choice of d, e.
-    """
-    wanted = sp.Poly(sp.prod(q * s - p * t for p, q in lines), s, t)
-    k30, k21, k12, k03 = (wanted.coeff_monomial(s**k * t ** (3 - k)) for k in (3, 2, 1, 0))
-    x, y = generator.randint(-5, 5), generator.randint(-5, 5)
-    d = sp.Matrix([x, y, k03])
-    e = sp.Matrix([-k30, x - k21, y - k12])
-    shear = sp.Matrix(3, 3, lambda i, j: generator.randint(-4, 4))
-    while shear.det() == 0:
-        shear = sp.Matrix(3, 3, lambda i, j: generator.randint(-4, 4))
-    return [shear * vector for vector in (*(sp.eye(3).col(k) for k in range(3)), d, e)]
-
-
-def test_three_rational_lines_are_the_factors_of_the_cubic(generator):
-    directions = [(1, 2), (-3, 1), (1, 0)]
-    vectors = rational_patch(generator, directions)
-    product = sp.S.One
-    for direction in directions:
-        assert binary_cubic(vectors).subs(dict(zip((s, t), direction, strict=True))) == 0
-        lines = lines_at(vectors, direction)
-        assert lines
-        for line in lines:  # every normal that does not vanish gives the same line
-            assert sp.Matrix(line).cross(sp.Matrix(lines[0])) == sp.zeros(3, 1)
-        l_u, l_v, l_1 = lines[0]
-        assert l_u * direction[1] == l_v * direction[0]
-        product *= l_u * u + l_v * v + l_1
-    quotient: Any
-    quotient, rest = sp.div(sp.Poly(cubic_of(vectors), u, v), sp.Poly(product, u, v))
-    assert rest.is_zero
-    assert quotient.total_degree() == 0
+    for k in range(3):
+        normal: Any = sp.Matrix(normals[3 * k : 3 * k + 3])
+        more: dict[str, Any] = dict(zip(("n_x", "n_y", "n_z"), normal, strict=True))
+        l_u, l_v, l_1 = expanded(gaussian_image.PARABOLIC_LINE, vectors, **more, s=s, t=1)
+        assert sp.rem(sp.Poly(l_u - s * l_v, s), in_s).is_zero
+        for expression in (cubic_of(vectors), *N.cross(normal)):
+            on_line = sp.numer(sp.together(expression.subs(v, -(l_u * u + l_1) / l_v)))
+            assert all(
+                sp.rem(sp.Poly(x, s), in_s).is_zero for x in sp.Poly(on_line, u).all_coeffs()
+            )
 
 
 # --- the boundary ---------------------------------------------------------------------------------
