@@ -1,5 +1,6 @@
 """The page of data sets says what the files hold, and its examples run."""
 
+import importlib.util
 import re
 from pathlib import Path
 
@@ -60,18 +61,10 @@ def folder(tmp_path: Path) -> Path:
 def run(blocks: list[str]) -> dict[str, object]:
     known: dict[str, object] = {"__name__": "__main__"}
     for source in blocks:
-        if "import torch" in source and not _is_installed("torch"):
+        if "import torch" in source and importlib.util.find_spec("torch") is None:
             continue
         exec(compile(source, "datasets.md", "exec"), known)
     return known
-
-
-def _is_installed(name: str) -> bool:
-    try:
-        __import__(name)
-    except ImportError:
-        return False
-    return True
 
 
 def check(known: dict[str, object]) -> None:

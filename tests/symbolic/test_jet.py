@@ -79,6 +79,13 @@ def test_the_product_rule():
     refused("no sum of multiples", derivative, Dot(a, b) * Dot(a, c), by, error=TypeError)
 
 
+def assert_derivatives(found: dict[str, Any], place: dict[sp.Symbol, Any]) -> None:
+    """Compare derivatives of the graph by s and t at a place."""
+    for name, by in {"ss": (s, s), "st": (s, t), "tt": (t, t), "s": (s,), "t": (t,)}.items():
+        expected = diff(GRAPH, *by).subs(place)
+        assert [sp.nsimplify(found[f"X_{name}_{axis}"]) for axis in "xyz"] == list(expected)
+
+
 @pytest.mark.parametrize("direction", [(1, 0), (sp.Rational(3, 5), sp.Rational(-4, 5))])
 def test_polar_chart(direction):
     cosine, sine = direction
@@ -87,9 +94,7 @@ def test_polar_chart(direction):
     here = {sp.cos(phi): cosine, sp.sin(phi): sine, r: distance}
     place = {scalar("x"): cosine, scalar("y"): sine, scalar("r"): distance}
     found = evaluated(POLAR_CHART, {key: x.subs(here) for key, x in polar.items()} | place)
-    for name, by in {"ss": (s, s), "st": (s, t), "tt": (t, t), "s": (s,), "t": (t,)}.items():
-        expected = diff(GRAPH, *by).subs({s: distance * cosine, t: distance * sine})
-        assert [found[f"X_{name}_{axis}"] for axis in "xyz"] == list(expected)
+    assert_derivatives(found, {s: distance * cosine, t: distance * sine})
 
 
 def test_at_pole():
@@ -99,7 +104,4 @@ def test_at_pole():
     }
     first = {f"e{k}": diff(along[k], r).subs(r, 0) for k in (0, 2)}
     second = {f"c{k}": diff(along[k], r, 2).subs(r, 0) for k in (0, 1, 2)}
-    found = evaluated(AT_POLE, components(**first, **second))
-    for name, by in {"ss": (s, s), "st": (s, t), "tt": (t, t), "s": (s,), "t": (t,)}.items():
-        expected = diff(GRAPH, *by).subs({s: 0, t: 0})
-        assert [sp.nsimplify(found[f"X_{name}_{axis}"]) for axis in "xyz"] == list(expected)
+    assert_derivatives(evaluated(AT_POLE, components(**first, **second)), {s: 0, t: 0})

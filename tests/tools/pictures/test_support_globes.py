@@ -21,12 +21,16 @@ def test_more_branches_are_not_drawn() -> None:
     assert branches_of(gm.sample("torus", normals=gm.icosphere(2), fields=fields)) == []
 
 
-def test_colours_are_the_support_function() -> None:
-    """That of the torus with K > 0 is R·|(n_x, n_y)| + r; errors are squares of angles."""
-    samples = gm.sample("torus", normals=gm.fibonacci(2000))
+def globe_of(samples: gm.Samples) -> tuple[np.ndarray, ...]:
+    """Return the values on the globe of the samples with K > 0, and x, y of its pixels."""
     branch = branches_of(samples)[0].samples
     values = values_on_globe(samples.normals[branch], samples.points[branch], view())
-    x, y = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, len(values))])
+    return values, *np.meshgrid(*2 * [np.linspace(-1.0, 1.0, len(values))])
+
+
+def test_colours_are_the_support_function() -> None:
+    """That of the torus with K > 0 is R·|(n_x, n_y)| + r; errors are squares of angles."""
+    values, x, y = globe_of(gm.sample("torus", normals=gm.fibonacci(2000)))
     inside = np.hypot(x, y) < 1.0
     z = np.sqrt(np.where(inside, 1.0 - x * x - y * y, 0.0))
     across = np.linalg.norm((np.stack([x, y, z], axis=2) @ view())[..., :2], axis=2)
@@ -36,10 +40,8 @@ def test_colours_are_the_support_function() -> None:
 
 
 def test_far_from_all_normals_nothing_is_drawn() -> None:
-    samples = gm.sample("torus", normals=gm.directions.cap(gm.fibonacci(2000), view()[2], 30))
-    branch = branches_of(samples)[0].samples
-    values = values_on_globe(samples.normals[branch], samples.points[branch], view())
-    x, y = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, len(values))])
+    near = gm.directions.cap(gm.fibonacci(2000), view()[2], 30)
+    values, x, y = globe_of(gm.sample("torus", normals=near))
     r = np.hypot(x, y)
     assert np.isfinite(values[r < 0.45]).all()
     assert np.isnan(values[(r > 0.65) & (r < 1.0)]).all()

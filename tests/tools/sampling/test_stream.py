@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import gaussmap as gm
 import numpy as np
@@ -146,25 +147,17 @@ def test_errors_come_at_once(arguments, error):
 def test_streams_in_several_python_threads():
     whole = gm.sample(TORUS, normals=gm.icosphere(8))
     narrow = gm.sample(TORUS, normals=gm.icosphere(8), fields=("points",), dtype=np.float32)
-    found: list[gm.Samples] = [whole] * 6
     start = threading.Barrier(6, timeout=30)
 
     def work(k):
         options = {"fields": ("points",), "dtype": np.float32} if k % 2 else {}
+        options |= {"chunk": 100 + k, "threads": 1 + k % 3}
         start.wait()
-        found[k] = gm.Samples.concatenate(
-            gm.sample_stream(
-                TORUS, normals=gm.icosphere(8), chunk=100 + k, threads=1 + k % 3, **options
-            )
-        )
+        return gm.Samples.concatenate(gm.sample_stream(TORUS, normals=gm.icosphere(8), **options))
 
-    workers = [threading.Thread(target=work, args=(k,)) for k in range(6)]
-    for worker in workers:
-        worker.start()
-    for worker in workers:
-        worker.join()
-    for k, samples in enumerate(found):
-        same(samples, narrow if k % 2 else whole)
+    with ThreadPoolExecutor(6) as pool:
+        for k, samples in enumerate(pool.map(work, range(6))):
+            same(samples, narrow if k % 2 else whole)
 
 
 def test_streams_may_be_interleaved():

@@ -97,47 +97,6 @@ def test_next_to_a_parabolic_line() -> None:
     assert 0 < np.count_nonzero(branches.elliptic) < len(branches)
 
 
-# --- the boundary ---------------------------------------------------------------------------------
-
-
-def graph(corners: list[list[int]]) -> Array:
-    """Return the net of z = u² + v² over a triangle: the polar form s·t at the middle points."""
-    x = np.array(corners, dtype=float)
-    ends, pairs = [(0, 0), (1, 1), (2, 2)], [(0, 1), (0, 2), (1, 2)]
-    return np.array([[*(x[i] + x[j]) / 2, x[i] @ x[j]] for i, j in ends + pairs])
-
-
-def test_boundary_normals_belong_to_the_closed_patch() -> None:
-    """The normal at (u, v) is along (−2u, −2v, 1): zeros stay zeros, equal ones stay equal."""
-    support = gm.SupportFunction.of_patch(graph([[1, 0], [0, 1], [0, 0]]))
-    t = np.linspace(0.0, 1.0, 41)
-    edges = [
-        np.column_stack([-2 * t, 0 * t, 1 + 0 * t]),
-        np.column_stack([0 * t, -2 * t, 1 + 0 * t]),
-    ]
-    for normals in edges:
-        assert support.contains(normals)[:-1].all()  # the last one is also on the third edge
-        outside = np.add(normals, [2.0**-52, 2.0**-52, 0.0])
-        assert not support.contains(outside).any()
-    diagonal = gm.SupportFunction.of_patch(graph([[1, 0], [1, 1], [0, 0]]))
-    on_edge = np.column_stack([-2 * t, -2 * t, 1 + 0 * t])
-    assert diagonal.contains(on_edge)[:-1].all()
-
-
-@pytest.mark.compiled
-def test_two_patches_with_a_common_edge_leave_no_gap() -> None:
-    square = [graph([[1, 0], [1, 1], [0, 0]]), graph([[1, 1], [0, 1], [0, 0]])]
-    one, two = (gm.SupportFunction.of_patch(net) for net in square)
-    t = np.linspace(0.1, 1.9, 300)
-    normals = unit(np.concatenate([gm.icosphere(40), np.column_stack([-t, -t, np.ones_like(t)])]))
-    u, v = (-normals[:, :2] / (2 * normals[:, 2:] + (normals[:, 2:] == 0))).T
-    inside = (np.minimum(u, v) > 1e-12) & (np.maximum(u, v) < 1 - 1e-12) & (normals[:, 2] > 0)
-    sheets = one.sheets(normals) + two.sheets(normals)
-    assert inside.any()
-    assert (sheets[inside] >= 1).all()
-    assert (sheets[inside] == 2).sum() == (normals[inside, 0] == normals[inside, 1]).sum() > 0
-
-
 @pytest.mark.compiled
 def test_patches_of_a_spline_have_its_branches() -> None:
     """Generic normals lie on no boundary: there the spline is the sum of its patches."""

@@ -7,9 +7,9 @@ import shutil
 import subprocess
 import time
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 import pytest
 
@@ -53,15 +53,8 @@ class Browser:
         for domain in ("Page", "Runtime", "Network"):
             self.send(f"{domain}.enable")
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
+    def close(self) -> None:
+        """End the browser."""
         self.process.terminate()
         self.process.wait(20)
         os.close(self.out)
@@ -164,7 +157,7 @@ def browser(tmp_path: Path) -> Iterator[Browser]:
     program = find_browser()
     if program is None:
         pytest.skip("there is no Chromium")
-    with Browser(program, tmp_path / "profile", timeout=300.0) as found:
+    with closing(Browser(program, tmp_path / "profile", timeout=300.0)) as found:
         found.send(
             "Network.emulateNetworkConditions",
             offline=True, latency=0, downloadThroughput=0, uploadThroughput=0,
