@@ -89,29 +89,16 @@ def files(parts: ModuleType) -> None:
 # ── What it does ─────────────────────────────────────────────────────────────────────────────────
 
 
-def test_sample_a_surface_by_name() -> None:
-    done = gaussmap("sample", "torus", "--count", "10000", "-o", "torus.ply")
-    assert (done.returncode, done.stderr) == (0, "")
-    assert re.fullmatch(
-        r"torus\.ply: 10,000 samples: [\d,]+ at [\d,]+ prescribed normals, [\d,]+ filling gaps "
-        r"\([\d,]+ with K > 0, [\d,]+ with K < 0\)\n",
-        done.stdout,
-    )
-    samples = gm.read_samples("torus.ply")
-    assert len(samples) == 10_000
-    distance = np.hypot(np.hypot(*samples.points[:, :2].T) - 1.0, samples.points[:, 2])
-    np.testing.assert_allclose(distance, 0.35, rtol=1e-3)
-
-
 def test_tolerance_of_data_and_what_the_summary_says_of_them(capsys):
     x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))
     np.save("heights.npy", 100 * np.exp(-3 * (x * x + y * y)))
     arguments = ["--spacing", "30", "30", "--tolerance", "1", "--count", "300", "-o", "a.npz"]
     assert main(["sample", "heights.npy", *arguments]) == 0
-    out = capsys.readouterr().out
+    out, samples = capsys.readouterr().out, gm.read_samples("a.npz")
+    assert out == f"a.npz: {samples.summary()}\n"
     assert "; they lie on a spline within 0." in out
     assert "of the data (root mean square 0." in out
-    report: Any = gm.read_samples("a.npz").report
+    report: Any = samples.report
     assert report.surface == "heights.npy"
     assert report.fit_distance <= 1.0
     assert report.patches < 4 * 49 * 39

@@ -10,35 +10,24 @@ import pytest
 
 from ...refusals import refused
 from ...shapes import square as mesh
-from .made import FIELDS
+from .made import FIELDS, columns_of
 from .made import make as samples
 
 DTYPES = pytest.mark.parametrize("dtype", [np.float64, np.float32])
 
 
-class TestPandas:
-    @DTYPES
-    def test_columns_are_those_of_a_csv_file(self, tmp_path, dtype):
-        found = samples(dtype=dtype)
-        frame = found.to_dataframe()
-        found.write(tmp_path / "noise.csv")
-        with open(tmp_path / "noise.csv", encoding="ascii") as file:
-            assert file.readline().strip().split(",") == list(frame)
-            rows = np.loadtxt(file, delimiter=",")
-        for name, column in zip(frame, rows.T, strict=True):
-            expected = np.int64 if name.endswith("index") else dtype
-            assert frame[name].dtype == expected
-            np.testing.assert_array_equal(frame[name], column.astype(expected))
-
-    def test_fewer_fields_and_no_samples(self):
-        assert list(samples(fields=("points",)).to_dataframe()) == ["x", "y", "z"]
-        assert samples(0).to_dataframe().shape == (0, 13)
-
-    def test_it_copies(self):
-        found = samples()
-        frame = found.to_dataframe()
-        frame.loc[0, "x"] = 100.0
-        assert found.points[0, 0] != 100.0
+@DTYPES
+@pytest.mark.parametrize("fields", [FIELDS, ("points",)])
+@pytest.mark.parametrize("count", [0, 12])
+def test_pandas_has_copies_of_the_columns(count, fields, dtype):
+    found = samples(count, dtype=dtype, fields=fields)
+    frame = found.to_dataframe()
+    columns = columns_of(found)
+    assert list(frame) == list(columns)
+    for name, column in columns.items():
+        assert frame[name].dtype == column.dtype
+        np.testing.assert_array_equal(frame[name], column)
+        assert not np.shares_memory(frame[name].to_numpy(), column)
 
 
 # How points of samples and their other arrays are read, and vertices, triangles and normals of

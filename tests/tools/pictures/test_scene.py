@@ -4,6 +4,12 @@ import pytest
 from gaussmap.tools.pictures.scene import divided, height_factor, scene_of, view
 
 
+def areas(triangles: np.ndarray) -> np.ndarray:
+    """Return the areas (k,) of triangles (k, 3, 3)."""
+    a, b, c = np.moveaxis(triangles, 1, 0)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
+
+
 def test_a_convex_surface_hides_its_back() -> None:
     spline = gm.fit(gm.surfaces.sphere())
     samples = gm.sample(spline, count=2000)
@@ -48,11 +54,7 @@ def test_triangles_are_divided_and_keep_their_area():
     small = divided(triangles, 0.3)
     sides = np.linalg.norm(small - np.roll(small, -1, axis=1), axis=2)
     assert sides.max() <= 0.3
-
-    def area(x):
-        return np.linalg.norm(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]), axis=1).sum() / 2
-
-    assert area(small) == pytest.approx(area(triangles), rel=1e-12)
+    assert areas(small).sum() == pytest.approx(areas(triangles).sum(), rel=1e-12)
     assert len(divided(triangles, 10.0)) == 20
 
 
@@ -63,8 +65,7 @@ def test_the_back_of_a_thin_plate_is_painted_first(parts):
         for z in (1e-3, 0.0)
     )
     assert len(bottom[1]) == 0
-    a, b, c = np.moveaxis(top[1], 1, 0)
-    assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 > 0.99
+    assert areas(top[1]).sum() > 0.99
     assert len(top[0]) < 10  # at corners: no middle of a pixel is in them
 
 
@@ -83,18 +84,15 @@ def test_triangles_fill_a_trimmed_square_and_have_an_area():
     circle = 1.0 + 0.5 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     square = [(0.0, 0.0), (0.0, 2.0), (2.0, 2.0), (2.0, 0.0)]
     sheet = gm.Surface.from_sympy(("u", "v", "0"), ("u", "v"), ((0, 2), (0, 2)))
-    a, b, c = np.moveaxis(scene_of(gm.Part([sheet.trimmed([circle, square])])).triangles, 1, 0)
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
-    assert areas.sum() == pytest.approx(4.0 - 12.5 * np.sin(2.0 * np.pi / 100), rel=1e-7)
-    assert areas.min() > 1e-6 * areas.max()
+    found = areas(scene_of(gm.Part([sheet.trimmed([circle, square])])).triangles)
+    assert found.sum() == pytest.approx(4.0 - 12.5 * np.sin(2.0 * np.pi / 100), rel=1e-7)
+    assert found.min() > 1e-6 * found.max()
 
 
 def test_triangles_of_a_part_have_its_area():
     part = gm.read_part(f"{gm.__path__[0]}/docs/gallery/bracket.npz")
-    a, b, c, _ = np.moveaxis(scene_of(part).quadrangles, 1, 0)
-    assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(
-        part.area, rel=2e-3
-    )
+    found = areas(scene_of(part).quadrangles[:, :3]).sum()
+    assert found == pytest.approx(part.area, rel=2e-3)
 
 
 def test_a_surface_is_drawn_where_there_are_data_only() -> None:

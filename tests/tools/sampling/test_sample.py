@@ -206,18 +206,6 @@ def test_samples_of_lists_of_normals_of_any_length(factor):
     np.testing.assert_allclose(single.normals, [normal] * 2, rtol=1e-15)
 
 
-def test_a_normal_that_is_asked_twice_is_answered_twice():
-    normals = np.repeat(gm.fibonacci(50), 3, axis=0)
-    samples = gm.sample(TORUS, normals=normals, cells=(12, 12))
-    assert np.bincount(samples.normal_index).tolist() == [2] * 150
-    single = gm.sample(TORUS, normals=gm.fibonacci(50), cells=(12, 12))
-    order = np.argsort(samples.normal_index, kind="stable").reshape(50, 3, 2)
-    points = samples.points[order]
-    assert (points == points[:, :1]).all()
-    expected = single.points[np.argsort(single.normal_index, kind="stable")].reshape(50, 1, 2, 3)
-    assert (points == expected).all()
-
-
 @pytest.mark.parametrize("count", [None, 500])
 def test_arrays_and_surfaces_are_left_alone(count):
     normals = np.array([[0.0, 0.0, 2.0], [0.0, 3.0, 0.0], [1.0, 1.0, 1.0]])
