@@ -3,14 +3,15 @@
 import importlib.util
 import re
 from pathlib import Path
+from typing import Any
 
 import gaussmap as gm
 import pytest
 from gaussmap.runtime.samples.fields import COLUMNS, EDGE_NAMES, FLOAT_NAMES, PROVED_NAMES, UNITS
-from gaussmap.tools.batch.folder import Settings, opened
+from gaussmap.tools.batch.folder import Settings
 from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST
-from gaussmap.tools.batch.manifest import ManifestRow, manifest_schema
-from gaussmap.tools.batch.part_files import points_schema, write_manifest, write_part
+from gaussmap.tools.batch.manifest import manifest_schema
+from gaussmap.tools.batch.part_files import points_schema
 
 PAGE = (Path(__file__).parents[2] / "docs" / "datasets.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
@@ -43,54 +44,20 @@ def test_the_columns_of_the_manifest():
     assert "\n".join(lines) in PAGE
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """Write the data set of the page without other processes."""
-    samples = list(
-        gm.sample_many(["torus", "sphere", "ellipsoid"], 500, cells=(16, 16), fields=FLOAT_NAMES)
-    )
-    settings, out = Settings.of_this_version(asked={}, fields=FLOAT_NAMES), tmp_path / "dataset"
-    with opened(out, settings):
-        for k, part in enumerate(samples):
-            row = ManifestRow(k, part.report.surface, "catalogue", "0", samples=len(part))
-            write_part(out, settings, row, part)
-        write_manifest(out, settings, range(len(samples)))
-    return tmp_path
-
-
-def run(blocks: list[str]) -> dict[str, object]:
-    known: dict[str, object] = {"__name__": "__main__"}
-    for source in blocks:
-        if "import torch" in source and importlib.util.find_spec("torch") is None:
-            continue
-        exec(compile(source, "datasets.md", "exec"), known)
-    return known
-
-
-def check(known: dict[str, object]) -> None:
-    samples, by_name, one, rows = (known[x] for x in ("samples", "by_name", "one", "rows"))
-    assert isinstance(samples, gm.Samples)
-    assert isinstance(rows, list)
-    assert len(samples) == len(one) == 500  # pyright: ignore[reportArgumentType]
-    assert dict(by_name.iter_rows()) == {"torus": 500, "sphere": 500, "ellipsoid": 500}  # pyright: ignore[reportAttributeAccessIssue]
-    assert [(name, count) for name, count, _ in rows] == [
-        ("ellipsoid", 500), ("sphere", 500), ("torus", 500)
-    ]  # fmt: skip
-    assert rows[1][2] == pytest.approx(1.0, rel=1e-2)  # K of the unit sphere
-
-
-def test_examples(folder, monkeypatch, capsys):
-    for name in ("duckdb", "pandas", "polars"):
-        pytest.importorskip(name)
-    monkeypatch.chdir(folder)
-    check(run(BLOCKS[1:]))
-    printed = capsys.readouterr().out.splitlines()
-    assert printed[0] in BLOCKS[1]
-    assert printed[1] == "3 (256, 3) (256, 3) 2 1"
-
-
-def test_all_examples(tmp_path, monkeypatch):
+def test_examples(tmp_path, monkeypatch, capsys):
     for name in ("duckdb", "pandas", "polars", "cloudpickle"):
         pytest.importorskip(name)
     monkeypatch.chdir(tmp_path)
-    check(run(BLOCKS))
+    known: dict[str, Any] = {"__name__": "__main__"}
+    for source in BLOCKS:
+        if "import torch" not in source or importlib.util.find_spec("torch"):
+            exec(compile(source, "datasets.md", "exec"), known)
+    assert isinstance(known["samples"], gm.Samples)
+    assert len(known["samples"]) == len(known["one"]) == 500
+    counts = {"ellipsoid": 500, "sphere": 500, "torus": 500}
+    assert dict(known["by_name"].iter_rows()) == counts
+    assert [(name, count) for name, count, _ in known["rows"]] == [*counts.items()]
+    assert known["rows"][1][2] == pytest.approx(1.0, rel=1e-2)  # K of the unit sphere
+    printed = [x for x in capsys.readouterr().out.splitlines() if x]
+    assert any(x in BLOCKS[1] for x in printed)
+    assert "3 (256, 3) (256, 3) 2 1" in printed

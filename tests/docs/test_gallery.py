@@ -17,8 +17,11 @@ def read(path):
     return nbformat.read(path, as_version=4)
 
 
-def outputs_of(path):
-    return [x for cell in read(path).cells for x in cell.get("outputs", ())]
+def assert_shown(path):
+    """Check that a notebook has a picture, and neither errors nor warnings."""
+    outputs = [x for cell in read(path).cells for x in cell.get("outputs", ())]
+    assert any("image/png" in x.get("data", {}) for x in outputs)
+    assert not [x for x in outputs if x.output_type == "error" or x.get("name") == "stderr"]
 
 
 def run(*arguments, folder):
@@ -53,18 +56,14 @@ def test_committed_notebook_is_of_its_script_and_small(script):
 
 @EACH
 def test_committed_notebook_shows_what_it_does(script):
-    outputs = outputs_of(script.with_suffix(".ipynb"))
-    assert any("image/png" in x.get("data", {}) for x in outputs)
-    assert not [x for x in outputs if x.output_type == "error" or x.get("name") == "stderr"]
+    assert_shown(script.with_suffix(".ipynb"))
 
 
 @EACH
 def test_notebook_runs(script, tmp_path):
     ended = run(notebooks.__file__, script.stem, "--to", str(tmp_path), folder=tmp_path)
     assert ended.returncode == 0, ended.stderr[-3000:]
-    outputs = outputs_of(tmp_path / f"{script.stem}.ipynb")
-    assert any("image/png" in x.get("data", {}) for x in outputs)
-    assert not [x for x in outputs if x.get("name") == "stderr"]
+    assert_shown(tmp_path / f"{script.stem}.ipynb")
 
 
 def test_a_cell_that_fails_is_an_error(tmp_path):

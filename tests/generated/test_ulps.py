@@ -168,16 +168,14 @@ def test_patches_of_any_floats(name, data):
     check_where_bounded(name, data.draw(numbers(name, floats)))
 
 
-@pytest.mark.parametrize("name", ["forms", "orientation"])
+@pytest.mark.parametrize(
+    ("name", "patches"),
+    [("forms", nearly_parabolic), ("orientation", nearly_parabolic),
+     ("envelope", nearly_flat), ("orientation", nearly_flat)],
+)  # fmt: skip
 @given(data=st.data())
-def test_nearly_parabolic_patches(name, data):
-    check_where_bounded(name, data.draw(nearly_parabolic(name)))
-
-
-@pytest.mark.parametrize("name", ["envelope", "orientation"])
-@given(data=st.data())
-def test_nearly_flat_patches(name, data):
-    check_where_bounded(name, data.draw(nearly_flat(name)))
+def test_patches_whose_terms_cancel(name, patches, data):
+    check_where_bounded(name, data.draw(patches(name)))
 
 
 @pytest.mark.parametrize("name", ["forms", "envelope", "orientation", "control_normals"])

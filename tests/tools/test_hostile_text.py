@@ -13,9 +13,9 @@ import pytest
 import sympy as sp
 from gaussmap.symbolic import BezierTriangle
 from hypothesis import given
-from hypothesis import strategies as st
 
 from ..refusals import refused as sentence_of
+from ..texts import texts
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
 CODE = "__import__('os').system('touch ran')"
@@ -157,22 +157,7 @@ def test_command_line_refuses_formulas_at_once() -> None:
     assert all(x.startswith("gaussmap: ") and len(x) <= 300 for x in errors)
 
 
-OPERANDS = st.sampled_from(["u", "v", "1", "0", "-2.5", "pi", "10**50", "u > v", "True", "k"])
-CALLS = ["{}({})", "({})**({})", "({})/({})", "({}) % ({})", "({}) < ({})", "Max({}, {})"]
-NAMES = ["sin", "acos", "log", "Abs", "floor", "sqrt", "exp", "atan2", "erf", "acsch", "gamma"]
-TEXTS = st.recursive(
-    OPERANDS,
-    lambda texts: (
-        st.builds(str.format, st.sampled_from(CALLS[1:]), texts, texts)
-        | st.builds(CALLS[0].format, st.sampled_from(NAMES), texts)
-        | st.builds("Sum({}, (k, 0, {}))".format, texts, texts)
-        | st.builds("Piecewise(({}, {}), ({}, True))".format, texts, texts, texts)
-    ),
-    max_leaves=12,
-)
-
-
-@given(text=TEXTS)
+@given(text=texts(12))
 def test_a_random_text_gives_points_or_an_error_of_gaussmap(text: str) -> None:
     try:
         points = gm.Surface.from_sympy(("u", "v", text), "uv", SQUARE).evaluate(0.375, 0.625)

@@ -82,6 +82,12 @@ def assert_farthest(surface: Any, count: int, sharp: bool) -> None:
     assert_allclose(surface.evaluate(*found.uv.T), found.points, atol=1e-13)
 
 
+def assert_exact(found: Any, values: Any, most: float) -> None:
+    """Check that values are known up to their errors, and that these are small."""
+    assert (np.abs(found.values - values) <= found.errors).all()
+    assert found.errors.max() < most
+
+
 @covering(name=SURFACES, on_spline=[False, True])
 def test_no_place_on_a_grid_is_farther(name: str, on_spline: bool) -> None:
     surface = SURFACES[name]
@@ -109,8 +115,7 @@ def test_values_of_a_torus_and_an_ellipsoid() -> None:
     torus = gm.GaussMap(TORUS).support(DIRECTIONS)
     exact = np.linalg.norm(radii * DIRECTIONS, axis=1), np.hypot(*DIRECTIONS.T[:2]) + 0.35
     for found, values in zip((ellipsoid, torus), exact, strict=True):
-        assert (np.abs(found.values - values) <= found.errors).all()
-        assert found.errors.max() < 1e-13
+        assert_exact(found, values, 1e-13)
         assert not found.on_border.any()
 
 
@@ -184,12 +189,10 @@ def test_errors_on_edges_are_those_of_the_curves_not_of_the_polygons(inside: boo
     vertex = np.array([(np.cos(turn), np.sin(turn), 0.0)])
     part = made.part([disk], edges=[rim], vertices=vertex)
     found = gm.GaussMap(part).support(DIRECTIONS)
-    away = np.abs(found.values - np.hypot(*DIRECTIONS.T[:2]))
-    assert (away <= found.errors).all()
+    assert_exact(found, np.hypot(*DIRECTIONS.T[:2]), 2.0 * (1.0 - np.cos(turn)))
     assert (np.abs(found.uv) <= end).all()
     # A cubic that replaces an arc of angle a deviates by about a⁴ / 384 at most.
     assert (found.errors.max() < (2.0 * np.pi / 64.0) ** 4 / 100.0) == (not inside)
-    assert found.errors.max() < 2.0 * (1.0 - np.cos(turn))
     # Some points of the curve are known.
     known = np.pad(made.round_side(1.0, 65, turn)[0], ((0, 0), (0, 1)))
     assert inside or gm.GaussMap(part).support(known).errors.max() < 1e-12
@@ -199,8 +202,7 @@ def test_an_edge_is_as_exact_as_its_better_side() -> None:
     """The rims of a cylinder are straight on its side, and cubics on its disks."""
     found = gm.GaussMap(made.CYLINDER).support(DIRECTIONS)
     exact = np.hypot(*DIRECTIONS.T[:2]) + 2.0 * np.maximum(DIRECTIONS[:, 2], 0.0)
-    assert (np.abs(found.values - exact) <= found.errors).all()
-    assert found.errors.max() < 1e-13
+    assert_exact(found, exact, 1e-13)
 
 
 def test_functions_without_a_proof_have_larger_errors() -> None:
@@ -209,10 +211,9 @@ def test_functions_without_a_proof_have_larger_errors() -> None:
         TORUS.domain, periodic=True,
     )  # fmt: skip
     found = gm.GaussMap(torus, cells=(16, 16)).support(DIRECTIONS)
-    away = np.abs(found.values - (np.hypot(*DIRECTIONS.T[:2]) + 0.35))
-    assert (away <= found.errors).all()
     misfit = gm.fit(torus, (16, 16)).misfit
-    assert 1e-12 < found.errors.max() < 2.0 * misfit.distance
+    assert_exact(found, np.hypot(*DIRECTIONS.T[:2]) + 0.35, 2.0 * misfit.distance)
+    assert found.errors.max() > 1e-12
 
 
 def test_a_map_pickles_after_a_query() -> None:

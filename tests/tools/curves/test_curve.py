@@ -78,6 +78,8 @@ NO_DOMAIN = [(0,), (0, 1, 2), (1, 0), (0, 0), (0, np.inf), (np.nan, 1), None, "a
         (POINTS, (np.ma.masked_equal(np.eye(4, 2), 1),), "masked"),
         *((gm.curves.fit, (ELLIPSE, x), "pieces must be") for x in (0, -3, 2.0, True)),
         (gm.curves.fit, (ELLIPSE, 2), "at least 3 pieces"),
+        (gm.curves.fit, (gm.surfaces.torus(),), "takes a Curve, not"),
+        (gm.curves.fit, (CALLABLE(ellipse, (1.0, 1.0 + 8 * ULP)),), "too narrow"),
     ],
 )  # fmt: skip
 def test_unusable_arguments(call, arguments, complaint):
@@ -85,15 +87,17 @@ def test_unusable_arguments(call, arguments, complaint):
 
 
 @pytest.mark.parametrize(
-    ("f", "complaint"),
-    [(lambda t: 1 / 0, "raised ZeroDivisionError"), (np.cos, "returned the shape"),
-     (lambda t: np.stack([t, t, t], -1), "returned the shape"),
-     (lambda t: np.stack([t, 1j * t], -1), "real numbers"),
-     (lambda t: np.stack([t, 1 / (t - 0.5)], -1), r"'curve' is not finite at t = 0\.5")],
+    ("how", "complaint"),
+    [((lambda t: 1 / 0, (0, 1)), "raised ZeroDivisionError"),
+     ((np.cos, (0, 1)), "returned the shape"),
+     ((lambda t: np.stack([t, t, t], -1), (0, 1)), "returned the shape"),
+     ((lambda t: np.stack([t, 1j * t], -1), (0, 1)), "real numbers"),
+     ((lambda t: np.stack([t, 1 / (t - 0.5)], -1), (0, 1)), r"'curve' is not finite at t = 0\.5"),
+     ((lambda t: 1e305 * ellipse(t), (0.0, 1.0)), "too large"),
+     ((ellipse, (0.0, 3.0), True), "does not close")],
 )  # fmt: skip
-def test_unusable_callables(f, complaint):
-    curve = gm.curves.Curve.from_callable(f, (0, 1))
-    refused(complaint, gm.curves.fit, curve, 4, error=gm.errors.SurfaceError)
+def test_unusable_callables(how, complaint):
+    refused(complaint, gm.curves.fit, CALLABLE(*how), 4, error=gm.errors.SurfaceError)
 
 
 # --- points ---------------------------------------------------------------------------------------
@@ -194,16 +198,6 @@ def test_closed_splines_wrap():
         np.testing.assert_allclose(moved, spline.evaluate(t), rtol=0, atol=64 * ULP)
     assert (spline.joint_normals[0] == spline.joint_normals[-1]).all()
     assert (spline.coefficients[:2] == spline.coefficients[-2:]).all()
-
-
-def test_what_cannot_be_fitted():
-    refused("takes a Curve, not", gm.curves.fit, gm.surfaces.torus())
-    open_ = gm.curves.Curve.from_callable(ellipse, (0.0, 3.0), periodic=True)
-    refused("does not close", gm.curves.fit, open_, error=gm.errors.SurfaceError)
-    narrow = gm.curves.Curve.from_callable(ellipse, (1.0, 1.0 + 8 * ULP))
-    refused("too narrow", gm.curves.fit, narrow)
-    huge = gm.curves.Curve.from_callable(lambda t: 1e305 * ellipse(t), (0.0, 1.0))
-    refused("too large", gm.curves.fit, huge, error=gm.errors.SurfaceError)
 
 
 def test_parameters_outside():
