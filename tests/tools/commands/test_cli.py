@@ -467,11 +467,20 @@ def test_bad_output_is_found_before_the_work(command, suffix, failing, monkeypat
         assert said in capsys.readouterr().err
 
 
-def test_healpix_that_is_not_installed(capsys, monkeypatch):
+@pytest.mark.parametrize(
+    ("command", "extra"),
+    [("sample torus --healpix 4 -o a.npz", "spheres"), ("sample torus -o a.parquet", "tables"),
+     ("mesh torus -o a.glb", "trimesh"), ("plot torus -o a.png", "plot"),
+     ("view torus -o a.html", "view")],
+)  # fmt: skip
+def test_a_library_that_is_not_installed(command, extra, failing, capsys, monkeypatch):
+    """It is named before the work."""
+    failing(AssertionError("worked in vain"))
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     monkeypatch.setitem(sys.modules, "astropy_healpix", None)
-    assert main(["sample", "torus", "--healpix", "4", *TO]) == 2
-    assert 'run: pip install "gaussmap[spheres]"' in capsys.readouterr().err
-    assert not Path("a.npz").exists()
+    assert main(command.split()) == 2
+    assert f'run: pip install "gaussmap[{extra}]"' in capsys.readouterr().err
+    assert not [*Path().iterdir()]
 
 
 def test_no_memory_and_a_bug_that_keeps_its_traceback(capsys, failing):

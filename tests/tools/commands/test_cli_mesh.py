@@ -29,9 +29,3 @@ def test_samples_that_are_left_out_are_counted(capsys: pytest.CaptureFixture[str
     few = ["--count", "300", "--cells", "16", "16"]
     assert main(["mesh", "wavy_graph", *few, "-o", "graph.ply"]) == 0
     assert f", {mesh.left_out} of the samples left out, " in capsys.readouterr().out
-
-
-def test_a_missing_library_is_told_at_once(monkeypatch, capsys):
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    assert main(["mesh", "torus", "-o", "torus.glb"]) == 2
-    assert 'run: pip install "gaussmap[trimesh]"' in capsys.readouterr().err

@@ -1,6 +1,5 @@
 """Tables in files: what pyarrow and pandas read, and text by Polars and without it."""
 
-import importlib.util
 import io
 import json
 from typing import Any
@@ -10,7 +9,6 @@ import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.files import tables
-from gaussmap.tools.files.formats import check_samples_target
 
 from .made import columns_of, make
 
@@ -43,18 +41,6 @@ def test_parquet_keeps_every_bit_types_units_and_the_report(tmp_path, dtype):
     assert read.schema.field("y").metadata[b"unit"] == b"L"
     assert read.schema.field("gaussian_curvature").metadata[b"unit"] == b"1/L^2"
     assert read.schema.field("v").metadata[b"field"] == b"uv"
-
-
-def test_without_pyarrow_the_extra_is_named_before_sampling(tmp_path, monkeypatch, capsys, main):
-    found = importlib.util.find_spec
-    monkeypatch.setattr(
-        "importlib.util.find_spec", lambda name: None if name == "pyarrow" else found(name)
-    )
-    path = str(tmp_path / "a.parquet")
-    with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[tables\]"'):
-        check_samples_target(path)
-    assert main(["sample", "torus", "-o", path]) == 2
-    assert "a .parquet file needs pyarrow" in capsys.readouterr().err
 
 
 def written(samples: gm.Samples, monkeypatch: pytest.MonkeyPatch, least: int) -> list[str]:

@@ -1,4 +1,3 @@
-import importlib.util
 import re
 from pathlib import Path
 from types import ModuleType
@@ -9,7 +8,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.pictures import palette
-from gaussmap.tools.pictures.plot import check_target, write_figure
+from gaussmap.tools.pictures.plot import write_figure
 from matplotlib import colors, image
 from matplotlib.figure import Figure
 
@@ -159,14 +158,6 @@ def test_surfaces_of_several_pieces(tmp_path: Path) -> None:
 
 def test_no_samples(torus: gm.Spline) -> None:
     refused("no samples to draw", gm.sample(torus, normals=[[0, 0, 1]])[:0].plot)
-
-
-def test_without_matplotlib(tmp_path, monkeypatch, capsys, main):
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[plot\]"'):
-        check_target(tmp_path / "a.png")
-    assert main(["plot", "torus", "-o", str(tmp_path / "a.png")]) == 2
-    assert 'pip install "gaussmap[plot]"' in capsys.readouterr().err
 
 
 def test_command_line(tmp_path, capsys, main):
