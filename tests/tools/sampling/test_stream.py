@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from gaussmap.tools.sampling import stream
 
+from ...refusals import refused
 from ...shapes import BROKEN, same
 
 TORUS = gm.fit(gm.surfaces.torus(), (12, 8))
@@ -122,23 +123,14 @@ def test_reports_count_their_chunk():
 
 
 @pytest.mark.parametrize(
-    ("arguments", "error"),
-    [
-        ({}, gm.errors.InputError),
-        ({"count": 5, "normals": [[0, 0, 1]]}, gm.errors.InputError),
-        ({"count": 0}, gm.errors.InputError),
-        ({"normals": [[0, 0, 0]]}, gm.errors.InputError),
-        ({"count": 5, "chunk": 0}, gm.errors.InputError),
-        ({"count": 5, "chunk": 2.5}, gm.errors.InputError),
-        ({"count": 5, "chunk": "many"}, gm.errors.InputError),
-        ({"count": 5, "threads": 0}, gm.errors.InputError),
-        ({"count": 5, "cells": (4, 4)}, gm.errors.InputError),
-        ({"count": 5, "surface": BROKEN}, gm.errors.SurfaceError),
-    ],
-)
-def test_errors_come_at_once(arguments, error):
-    with pytest.raises(error):
-        gm.sample_stream(**{"surface": TORUS, **arguments})
+    "asked",
+    [{}, {"count": 5, "normals": [[0, 0, 1]]}, {"count": 0}, {"normals": [[0, 0, 0]]},
+     *({"count": 5, "chunk": x} for x in (0, 2.5, "many")),
+     {"count": 5, "threads": 0}, {"count": 5, "cells": (4, 4)}],
+)  # fmt: skip
+def test_errors_come_at_once(asked):
+    refused("", gm.sample_stream, TORUS, **asked)
+    refused("", gm.sample_stream, BROKEN, 5, error=gm.errors.SurfaceError)
 
 
 # --- at once --------------------------------------------------------------------------------------
