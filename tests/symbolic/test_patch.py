@@ -244,19 +244,17 @@ def test_a_writing_that_is_not_what_was_derived_is_refused():
 # --- what a triangle may be made of ---------------------------------------------------------------
 
 
-def test_floats_are_taken_at_their_binary_value_and_strings_at_their_decimal_one():
-    row = ["0.1", 0.1, np.float32(0.1)]
+@pytest.mark.parametrize(
+    ("row", "exact"),
+    [(["0.1", 0.1, np.float32(0.1)], ["1/10", Fraction(0.1), Fraction(float(np.float32(0.1)))]),
+     ([sp.Rational(1, 3), Fraction(1, 3), "1/3"], ["1/3"] * 3),
+     ([np.int64(7), 7, "7"], [7] * 3)],
+    ids=["decimals", "thirds", "integers"],
+)  # fmt: skip
+def test_numbers_are_exact(row, exact):
+    """Floats are taken at their binary value, and texts at their decimal one."""
     values: Any = triangle_of([row] * 6).control_points[0]
-    exact = [Fraction(1, 10), Fraction(0.1), Fraction(float(np.float32(0.1)))]
-    assert list(values) == [sp.Rational(a.numerator, a.denominator) for a in exact]
-
-
-def test_rationals_of_every_kind_are_kept():
-    kinds = [sp.Rational(1, 3), Fraction(1, 3), "1/3"]
-    thirds: Any = triangle_of([kinds] * 6).control_points[5]
-    sevens: Any = triangle_of([[np.int64(7), 7, "7"]] * 6).control_points[0]
-    assert set(thirds) == {sp.Rational(1, 3)}
-    assert set(sevens) == {7}
+    assert list(values) == [sp.Rational(str(x)) for x in exact]
 
 
 def test_symbols():

@@ -15,7 +15,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import click
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -155,13 +154,7 @@ def test_surfaces(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_formulas(capsys: pytest.CaptureFixture[str]) -> None:
-    from gaussmap.tools.commands.completion import formula_names
-
     formulas = gm.formulas
-
-    anything: Any = None
-    context = click.Context(click.Command("formulas"))
-    assert formula_names(context, anything, "") == [*formulas]
     assert main(["formulas"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == list(formulas)
@@ -626,6 +619,7 @@ COMMANDS = [
         ("gaussmap surfaces tor", ["torus"]),
         ("gaussmap sample torus --set mi", ["minor="]),
         ("gaussmap formulas support_f", ["support_function"]),
+        ("gaussmap formulas ", [*gm.formulas]),
         ("gaussmap completion z", ["zsh"]),
         ("gaussmap mesh torus --density un", ["uniform"]),
         ("gaussmap mesh torus -o a", ["file:a"]),

@@ -15,12 +15,13 @@ from gaussmap.tools.commands.part_lists import listed
 
 from ...refusals import refused
 
-SMALL = ["--cells", "8", "8", "--count", "50", "--density", "uniform", "--float32"]
+SMALL = ["--cells", "8", "8", "--count", "50", "--density", "uniform"]
 
 
 def test_a_run_and_the_same_again(capfd: pytest.CaptureFixture[str]) -> None:
     Path("list.txt").write_text("# two parts\n\nsphere\nmissing.step\n")
     command = ["batch", "torus", "--list", "list.txt", *SMALL, "-o", "set", "--workers", "1"]
+    command += ["--float32"]
     assert main(command) == 3
     out, err = capfd.readouterr()
     assert "set: 100 samples of 3 parts" in out
@@ -42,8 +43,7 @@ def test_a_run_and_the_same_again(capfd: pytest.CaptureFixture[str]) -> None:
 
 def same_as_sample(data: gm.Dataset, part: int, *arguments: str) -> bool:
     """Say whether a part has the points that `gaussmap sample` writes."""
-    options = [x for x in SMALL if x != "--float32"]
-    assert main(["sample", *arguments, *options, "-o", "one.npz", "--quiet"]) == 0
+    assert main(["sample", *arguments, *SMALL, "-o", "one.npz", "--quiet"]) == 0
     return np.array_equal(data.samples(part).points, gm.read_samples("one.npz").points)
 
 
@@ -52,7 +52,7 @@ def test_elevations(capfd: pytest.CaptureFixture[str]) -> None:
     np.save("heights.npy", heights)
     np.savez("two.npz", high=2 * heights, low=heights)
     command = ["batch", "heights.npy", "two.npz:high", "-o", "set", "--workers", "1", "--quiet"]
-    command += [x for x in SMALL if x != "--float32"]
+    command += SMALL
     assert main([*command, "--spacing", "30", "-30"]) == 0
     data = gm.open_dataset("set")
     assert data.settings.asked["spacing"] == [30.0, -30.0]
@@ -70,9 +70,8 @@ def test_elevations(capfd: pytest.CaptureFixture[str]) -> None:
 def test_formulas() -> None:
     formulas = ["u", "v", "u*v"], ["u", "v", "cos(u)*v"]
     domain = ["--domain", "-1", "1", "-1", "pi/3"]
-    options = [x for x in SMALL if x != "--float32"]
     command = ["batch", "torus", "--formula", *formulas[0], "--formula", *formulas[1]]
-    command += [*domain, *options, "-o", "set", "--workers", "1", "--quiet"]
+    command += [*domain, *SMALL, "-o", "set", "--workers", "1", "--quiet"]
     assert main(command) == 0
     data = gm.open_dataset("set")
     names = ["torus", "(u, v, u*v)", "(u, v, cos(u)*v)"]

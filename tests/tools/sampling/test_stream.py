@@ -60,12 +60,6 @@ def test_the_proof_of_a_block_is_counted_once(monkeypatch):
     assert [x.normal for x in undecided] == [100]
 
 
-def test_many_normals_are_one_block():
-    normals = gm.fibonacci(100_000)
-    chunks = gm.sample_stream(TORUS, normals=normals, chunk=30_000, fields=("points",))
-    same(gm.Samples.concatenate(chunks), gm.sample(TORUS, normals=normals, fields=("points",)))
-
-
 @pytest.mark.parametrize("size", [10, 64, 333])
 @pytest.mark.parametrize("asked", [{"normals": gm.icosphere(6)}, {"count": 700}])
 def test_blocks_of_normals(size, asked, monkeypatch):
