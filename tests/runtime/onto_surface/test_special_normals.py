@@ -60,6 +60,15 @@ def vase() -> gm.Surface:
     return gm.Surface.from_nurbs((2, 4), (conics(CIRCLE), knots), points, weights)
 
 
+def shaft() -> gm.Surface:
+    """Return a surface of revolution with two cylinders, of radii 1 and 1.5, closely together."""
+    r = np.concatenate([np.ones(9), [1.25], np.full(9, 1.5)])
+    points = np.array([[(a * x, a * y, k) for k, a in enumerate(r)] for x, y in CIRCLE])
+    knots = np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, len(r) - 2), np.ones(3)])
+    weights = np.outer(WEIGHTS, np.ones(len(r)))
+    return gm.Surface.from_nurbs((2, 3), (conics(CIRCLE), knots), points, weights)
+
+
 def on_top(x: Any, y: Any, z: Any) -> Any:
     return np.hypot(np.hypot(x, y) - 1.0, z - 0.4)
 
@@ -89,6 +98,22 @@ CASES = {
     "flat crossing": Case(partial(graph, "u**4*v**2"), Z, [CURVE], 0, lambda x, y, z: x * y, 1e-3),
     "cylinder in a vase": Case(vase, X, [CURVE], 0, lambda x, y, z: np.hypot(x - 1.0, y), 1e-9),
     "plane in a vase": Case(vase, (0.0, 0.0, -1.0), [CURVE], 0, lambda x, y, z: z - 1.8, 1e-9),
+    "cylinders of a shaft": Case(
+        shaft, X, [CURVE, CURVE], 0, lambda x, y, z: np.hypot((x - 1.0) * (x - 1.5), y), 1e-9
+    ),
+    "cylinders off a knot": Case(
+        shaft, (0.6, 0.8, 0.0), [CURVE, CURVE], 0,
+        lambda x, y, z: np.hypot((x - 0.6) * (x - 0.9), (y - 0.8) * (y - 1.2)), 1e-9,
+    ),
+    "concentric circles": Case(
+        partial(graph, "((u**2 + v**2 - 1/8) * (u**2 + v**2 - 1/2))**2"), Z,
+        [REGULAR, CURVE, CURVE, CURVE], 1,
+        lambda x, y, z: np.prod([x * x + y * y - a for a in (0.125, 0.3125, 0.5)], axis=0), 1e-7,
+    ),
+    "parallel lines": Case(
+        partial(graph, "((u - v)**2 - 1/4)**2"), Z, [CURVE, CURVE, CURVE], 0,
+        lambda x, y, z: (x - y - 0.5) * (x - y) * (x - y + 0.5), 1e-7,
+    ),
     "cylinder": Case(
         gm.surfaces.cylinder, (0.6, 0.8, 0.0), [CURVE], 0,
         lambda x, y, z: np.hypot(x - 0.6, y - 0.8), 1e-12,

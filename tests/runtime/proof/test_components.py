@@ -21,11 +21,13 @@ def answers(*boxes: tuple[int, int, list[float]]) -> Answers:
 
 
 APART = [[0.1, 0.2, 0.5, 0.6], [0.4, 0.5, 0.5, 0.6]]
+LINES = [[0.1, 0.1, 0.0, 0.9], [0.1, 0.1, 1.0, 2.0]]
 ENDS = [[0.1, 0.2, 0.0, 0.1], [0.1, 0.2, 1.9, 2.0]]
 JOINED: dict[str, tuple[list[list[float]], list[list[float]]]] = {
     "touching": ([[0.1, 0.2, 0.5, 0.6], [0.2, 0.3, 0.5, 0.6]], [[0.1, 0.3, 0.5, 0.6]]),
     "at a corner": ([[0.1, 0.2, 0.5, 0.6], [0.2, 0.3, 0.6, 0.7]], [[0.1, 0.3, 0.5, 0.7]]),
     "apart": (APART, APART),
+    "lines closer than they are long": (LINES, LINES),
     "over the seam": ([[0.9, 1.0, 0.5, 0.6], [0.0, 0.1, 0.5, 0.6]], [[-0.1, 0.1, 0.5, 0.6]]),
     "no seam": (ENDS, ENDS),
     "a chain": (
@@ -47,6 +49,15 @@ def test_boxes_of_one_normal_that_touch_are_joined(name: str) -> None:
         # The points of curves are those of the search.
         middles = np.reshape(boxes, (-1, 2, 2)).mean(axis=2)
         assert (np.abs(found.uv[:, None] - middles).max(axis=2).min(axis=1) < 1e-15).all()
+
+
+@pytest.mark.parametrize(("width", "kind"), [(1e-6, CURVE), (1e-5, OPEN)])
+def test_tiny_open_boxes_at_the_end_of_a_curve_belong_to_it(width: float, kind: int) -> None:
+    boxes = [(0, OPEN, [0.1, 0.1, 0.9, 0.9 + 2.0 * width]), (0, CURVE, [0.1, 0.1, 0.0, 0.9])]
+    for order in (boxes, boxes[::-1]):
+        found = components_of(boxes_of([answers(*order)]), DOMAIN)
+        np.testing.assert_array_equal(found.kinds, kind)
+        np.testing.assert_array_equal(found.uv, [[0.1, 0.45]] if kind == CURVE else found.uv)
 
 
 def test_components_are_those_of_one_normal_and_kind() -> None:
