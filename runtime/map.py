@@ -226,7 +226,8 @@ class GaussMap(Methods):
         surface ends in tips, their degrees are added: 1 for normals in the normal cone of a convex
         tip, and in general the signed number of times that the normals at the tip cover a normal.
         Isolated points with K = 0, curves and points of creases count with their index, and
-        undecided boxes with their degree. Curves that end in an edge or in a crease count 0.
+        undecided boxes with their degree. A curve counts 0 if its index is unknown, as where it
+        ends in an edge or in a crease, or branches.
 
         Parameters
         ----------

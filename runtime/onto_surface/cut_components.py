@@ -34,7 +34,8 @@ def components_in(
     """Return the known components inside a trim, and the boxes that remain undecided.
 
     A component counts as known if its kind is known. A component that the boundary of the trim cuts
-    gets a row for each of its pieces inside the trim, or an undecided box if no piece is found.
+    gets a row for each of its pieces inside the trim, or an undecided box if no piece is found. The
+    pieces of curves with overlapping boxes are found together.
     `jets` returns the 2-jets of the surface at u and v (k,). The normals (S, 3) are unit vectors.
     """
     known = open_.kinds != OPEN_BOX
@@ -42,25 +43,48 @@ def components_in(
         return _rows(open_, known), _rows(open_, ~known)
     sides = trim.sides(open_.boxes, normals[open_.numbers])
     open_ = open_._replace(border=open_.border | (sides == 0))
-    found, left = [_rows(open_, known & (sides > 0))], ~known & (sides >= 0)
+    found, left, done = list[Undecided](), ~known & (sides >= 0), np.zeros_like(known)
     cut = dict[bytes, Undecided]()  # the pieces of a box and a normal, which queries may repeat
     for k in np.flatnonzero(known & (sides == 0)).tolist():
+        if done[k]:
+            continue
         one, normal = _rows(open_, [k]), normals[open_.numbers[k]]
+        group = np.arange(len(known)) == k
         if one.kinds[0] == ISOLATED:
             pieces = _rows(one, trim.contains(one.uv))
         else:
+            group, hull = _overlapping(open_, k)
+            one = one._replace(boxes=hull[None])
             key = one.boxes.tobytes() + normal.tobytes()
             if key not in cut:
                 cut[key] = _pieces(trim, one, normal, jets)
             pieces = cut[key]._replace(numbers=np.repeat(one.numbers, len(cut[key].numbers)))
         found.append(pieces)
-        left[k] = len(pieces.numbers) == 0
+        done |= group
+        left |= group & (len(pieces.numbers) == 0)
+    found.append(_rows(open_, known & (sides > 0) & ~done))
     whole = Undecided._make(np.concatenate(x) for x in zip(*found, strict=True))
     return _rows(whole, np.argsort(whole.numbers, kind="stable")), _rows(open_, left)
 
 
 def _rows(open_: Undecided, rows: Indices | Flags | list[int]) -> Undecided:
     return Undecided._make(x[rows] for x in open_)
+
+
+def _overlapping(open_: Undecided, k: int) -> tuple[Flags, Array]:
+    """Return the rows of curves whose boxes overlap that of row k, and the hull (4,) of all.
+
+    They have the same normal. Boxes that overlap the hull count, too.
+    """
+    low, high = open_.boxes[:, 0::2], open_.boxes[:, 1::2]
+    same, chosen = open_.numbers == open_.numbers[k], np.arange(len(low)) == k
+    same &= open_.kinds == open_.kinds[k]
+    while True:
+        first, last = low[chosen].min(axis=0), high[chosen].max(axis=0)
+        more = same & ((low <= last) & (high >= first)).all(axis=1)
+        if (more == chosen).all():
+            return chosen, np.stack([first, last], axis=1).ravel()
+        chosen = more
 
 
 class Grid(NamedTuple):

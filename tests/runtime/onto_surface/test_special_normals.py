@@ -254,6 +254,11 @@ CUT: dict[str, tuple[Callable[[], gm.Surface], Any, int]] = {
         {"loops": [disc((0.0, 0.0), 0.8), disc((0.0, 0.0), 0.3)]},
         1,
     ),
+    "circles": (
+        CASES["concentric circles"].surface,
+        {"within": lambda u, v: abs(u - 0.45) > 0.02},
+        5,
+    ),
     "arcs": (CASES["crater"].surface, {"within": lambda u, v: abs(u + v) > 0.2}, 2),
 }
 
