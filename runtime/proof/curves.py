@@ -18,7 +18,7 @@ Jets = Callable[[Array, Array], Array]
 THIN = 1e-3
 # The small boxes are drawn on a raster of SIDE × SIDE cells. Curves and regions closer than two
 # cells count as one.
-SIDE = 512
+SIDE = 256
 # The point of a curve is reached from at most STARTS of its boxes.
 STARTS = 65
 # There are at most STEPS Gauss–Newton steps to a point with a given normal. They end when the
@@ -65,21 +65,21 @@ def _connected(low: Array, high: Array, size: Array, around: Flags) -> Indices:
 
     `around` (2,) is True along an axis whose ends are joined.
     """
+    from scipy.ndimage import label  # imported late: most normals have no such box
+
     first, last = (np.clip(SIDE * x / size, 0, SIDE - 1).astype(np.int64) for x in (low, high))
-    cells = np.full((SIDE, SIDE), -1)
+    cells = np.zeros((SIDE, SIDE), np.bool_)
     for (i, j), (m, n) in zip(first.tolist(), last.tolist(), strict=True):
-        cells[i : m + 1, j : n + 1] = 0
-    count = np.count_nonzero(cells == 0)
-    cells[cells == 0] = np.arange(count)
-    links = []
-    for step in ((1, 0), (0, 1), (1, 1), (1, -1)):
-        beside = np.roll(cells, step, axis=(0, 1))
-        for axis in np.flatnonzero(np.array(step) * ~around).tolist():
-            np.moveaxis(beside, axis, 0)[0 if step[axis] > 0 else -1] = -1
-        both = (cells >= 0) & (beside >= 0)
-        links.append(np.stack([cells[both], beside[both]]))
-    owner = linked(count, *np.concatenate(links, axis=1))[1]
-    return owner[cells[tuple(first.T)]]
+        cells[i : m + 1, j : n + 1] = True
+    sets, count = label(cells, np.ones((3, 3)))
+    links = [np.empty((2, 0), np.int64)]
+    for axis in np.flatnonzero(around).tolist():
+        start, end = np.take(sets, 0, axis), np.take(sets, -1, axis)
+        links += [np.stack([start, np.roll(end, x)]) for x in (-1, 0, 1)]
+    one, other = np.concatenate(links, axis=1)
+    both = (one > 0) & (other > 0)
+    owner = linked(count, one[both] - 1, other[both] - 1)[1]
+    return owner[sets[tuple(first.T)] - 1]
 
 
 def _hull(middles: Array, halves: Array) -> Array:
