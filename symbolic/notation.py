@@ -64,7 +64,7 @@ class Dot(VectorProduct):
     """The scalar product of two vector symbols."""
 
     def in_components(self) -> sp.Expr:
-        """Return s · t."""
+        """Return the scalar product of the components of both vectors."""
         s, t = self.factors
         return dot(s, t)
 

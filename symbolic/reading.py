@@ -139,7 +139,7 @@ def read(text: str, symbols: Mapping[str, Any] | None = None, exact: bool = Fals
 
 
 def refuse_unusable(expression: sp.Basic) -> None:
-    """Raise ReadingError if an expression has huge numbers or parts that kernels cannot compute."""
+    """Raise ReadingError if an expression is too deep, or has parts that kernels cannot compute."""
     if _depth(expression) > DEEPEST_TREE:
         raise ReadingError("it is nested too deeply")
     for part in parts(expression):

@@ -158,8 +158,8 @@ def mesh(
         - "normals": triangles deviate from the normals at their corners as little as the
           samples allow. They are long and thin where the surface is curved in one direction only. A
           sample is left out where a triangle would have no area. On a CAD part, planes, cylinders
-          and cones have vertices on their edges only; other faces have rows of vertices between
-          which normals turn equally.
+          and cones have vertices on their edges only; on other faces the angles between normals
+          of neighbouring vertices are about equal.
     progress : bool, default False
         Show the progress on a terminal, after the first second.
 
@@ -415,7 +415,7 @@ def unobstructed(
 
 
 def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
-    """Return which points of a silhouette are seen: no part of the surface is before them.
+    """Return a mask of the visible points of a silhouette: no part of the surface hides them.
 
     For a silhouette along a direction, the eye is infinitely far away and looks in this direction.
 

@@ -28,9 +28,9 @@ from ..surface.surface import Surface
 from ..tape.kernels.points import Tape
 from ..tape.tapes import bounds_over_boxes, jets_of
 
-# Along creases, normals are known up to the angle SMOOTH. Where n·x_ww is 0, too, zeros of n·x_w
-# are known up to APART, the square root of SMOOTH. Therefore points of one crease with the same
-# normal that are closer than APART, relative to the length of the crease in w, are one component.
+# Along creases, n·x_w counts as 0 up to SMOOTH |x_w|. Where n·x_ww is 0, too, zeros of n·x_w are
+# known up to APART, the square root of SMOOTH. Therefore points of one crease with the same normal
+# that are closer than APART, relative to the length of the crease in w, are one component.
 # The signs of n·x_w before and after a component are taken at the distance APART from it.
 SMOOTH = 1e-9
 APART = math.sqrt(SMOOTH)

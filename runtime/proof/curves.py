@@ -71,7 +71,8 @@ def _connected(low: Array, high: Array, size: Array, around: Flags) -> Indices:
     cells = np.zeros((SIDE, SIDE), np.bool_)
     for (i, j), (m, n) in zip(first.tolist(), last.tolist(), strict=True):
         cells[i : m + 1, j : n + 1] = True
-    sets, count = label(cells, np.ones((3, 3)))
+    found: tuple[Indices, int] = label(cells, np.ones((3, 3)))  # pyright: ignore
+    sets, count = found
     links = [np.empty((2, 0), np.int64)]
     for axis in np.flatnonzero(around).tolist():
         start, end = np.take(sets, 0, axis), np.take(sets, -1, axis)

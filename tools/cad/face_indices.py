@@ -171,7 +171,7 @@ def _wider(surface: Surface, gap: float) -> Domain:
 
 
 def _on_side(surface: Surface, axis: int, end: int) -> Array:
-    """Return equally spaced points (PLACES, 3) of the surface on a side of its domain."""
+    """Return points (PLACES, 3) at equally spaced parameters on a side of the domain."""
     low, high = surface.domain[1 - axis]
     places = np.full(PLACES, surface.domain[axis][end]), np.linspace(low, high, PLACES)
     return surface.jets(*(places if axis == 0 else places[::-1]))[:, 0]

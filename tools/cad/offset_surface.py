@@ -60,7 +60,7 @@ class Turned(Differentiable):
         return turned_tape(self.curve)
 
     def restricted(self, domain: Domain) -> Turned:
-        """Return the surface over a subdomain, evaluated from inside where it is not smooth."""
+        """Return the surface over a subdomain; derivatives at its sides are those from inside."""
         return Turned(self.curve.restricted((domain[1], self.curve.domain[1])))
 
 
@@ -92,7 +92,7 @@ class OffsetSurface(Differentiable):
         return self._at_distance(jets, thirds)
 
     def restricted(self, domain: Domain) -> OffsetSurface:
-        """Return the surface over a subdomain, evaluated from inside where it is not smooth."""
+        """Return the surface over a subdomain; derivatives at its sides are those from inside."""
         return replace(self, basis=self.basis.restricted(domain), domain=domain)
 
     def _at_distance(self, jets: Array, thirds: Array) -> Array:

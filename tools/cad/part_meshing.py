@@ -150,7 +150,7 @@ def _check_apart(part: Part) -> None:
 
 
 def _inward(mesh: PartMesh, whole: PartSpace, rows: Indices) -> str:
-    """Return a sentence about triangles that point inward; it names the face of the first one."""
+    """Return the text of a warning about triangles that point inward, with the first one's face."""
     face = mesh.face_index[rows[0]]
     label = next(x.label for x in whole.pieces if x.face.index == face)
     return (

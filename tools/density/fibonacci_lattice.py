@@ -29,7 +29,7 @@ class Lattice:
     def around(cls, spline: AnySpline, reach: Reach | None = None) -> Lattice:
         """Return the lattice on the smallest cap around the mean normal that contains every normal.
 
-        If the smallest cap around the normals in a `reach` is smaller, the lattice is on that cap.
+        If the smallest of the caps of a `reach` is smaller, the lattice is on that cap.
         """
         found = cls._around_all(spline)
         if reach is not None and (cap := reach._smallest).angle < 90.0:

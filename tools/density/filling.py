@@ -255,7 +255,7 @@ class Filling:
     # --- covers -----------------------------------------------------------------------------------
 
     def _by_radius(self) -> Cover:
-        """Return the cover if normals, an angle, or only a coverage is requested.
+        """Return the cover for requested normals, a requested angle, or a requested coverage alone.
 
         It has samples at the requested normals, or, for an angle or a coverage, at lattices of
         normals; further samples fill the gaps.

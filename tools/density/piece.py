@@ -40,9 +40,10 @@ class Piece(ABC):
 
     @property
     def polygons(self) -> Sequence[Array]:
-        """The closed polygons (k, 2) along which samples are placed, if the piece has a trim.
+        """The closed polygons (k, 2) that bound the piece, if they are known.
 
-        The first point of a polygon is not repeated at its end.
+        Samples are placed along them if the piece has a trim. The first point of a polygon is not
+        repeated at its end.
         """
         return ()
 
@@ -78,7 +79,7 @@ class Piece(ABC):
     def fields_at(
         self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
     ) -> dict[str, NDArray[Any]]:
-        """Return fields of samples at parameters (k, 2), in cells with the rows `rows` (k, 8)."""
+        """Return fields of samples at parameters (k, 2) in cells; `rows` (k, 8) describe these."""
 
     def solid_angle(self, density: float) -> float | None:
         """Return the solid angle of the Gaussian image, as far as a lattice can sample it.

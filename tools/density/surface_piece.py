@@ -76,7 +76,7 @@ class SurfacePiece(Piece):
     def fields_at(
         self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
     ) -> dict[str, NDArray[Any]]:
-        """Return fields of samples at parameters (k, 2), in cells with the rows `rows` (k, 8)."""
+        """Return fields of samples at parameters (k, 2) in cells; `rows` (k, 8) describe these."""
         return self.geometry.at_parameters(uv, rows[:, 3:6], rows[:, 7], fields, dtype)
 
     def solid_angle(self, density: float) -> float:

@@ -50,7 +50,7 @@ WIDE_SPHERE, WIDE_SURFACE = 1.7, 6.0
 ROOM, WIDE_ROOM = (3.7, 2.75), (4.7, 2.75)  # of the surface
 GLOBE = 0.64  # the radius of a globe of the support function
 SUFFIXES = (".png", ".pdf", ".svg")
-FINE = 300  # dots per inch
+FINE = 300  # dots per inch of rasterized quadrangles in .pdf and .svg files
 UNDATED = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
 
 

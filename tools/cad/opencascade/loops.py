@@ -133,7 +133,7 @@ def _edges_of(wire: Any, face: Any) -> list[tuple[Any, PCurve]]:  # noqa: ANN401
 
 
 def _chained(curves: list[PCurve]) -> list[int]:
-    """Return the indices of curves in an order: each begins close to the end of the one before."""
+    """Return the indices of curves as a chain: each is the next one that begins nearest."""
     ends = [x.evaluate(np.array(x.ends))[:, :2] for x in curves]
     ends = [x[::-1] if curve.reversed else x for x, curve in zip(ends, curves, strict=True)]
     order, left = [0], set(range(1, len(curves)))
