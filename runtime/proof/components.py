@@ -92,7 +92,10 @@ def _join(open_: Undecided, keep: NDArray[np.bool_], domain: Array) -> None:
         on_curve, is_open = kinds == CURVE, (kinds != CURVE) & (width > NEAR * size).any(axis=1)
         width[on_curve & (width > LARGEST * size).any(axis=1)] = 0.0
         near = np.maximum(np.maximum(width, width[k]), NEAR * size)
-        touch = keep & np.all((low <= high[k] + near) & (high >= low[k] - near), axis=1)
+        touch = np.all((low <= high[k] + near) & (high >= low[k] - near), axis=1)
+        # Boxes beside a curve may count as boxes on it: then Gauss–Newton steps lead to its box.
+        at = np.all((low <= open_.uv[k]) & (high >= open_.uv[k]), axis=1)
+        touch = keep & (touch | (on_curve & on_curve[k] & at))
         touch[k] = False
         if not keep[k] or not touch.any():
             k += 1

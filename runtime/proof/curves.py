@@ -54,10 +54,15 @@ def separated(one: Undecided, boxes: Array, periods: Array, normal: Array, jets:
     rows = [owner == k for k in range(owner.max() + 1)]
     if len(rows) < 2:
         return one
-    hulls = np.array([_hull(middles[x], halves[x]) for x in rows])
-    points = [_point(middles[x], y, normal, jets) for x, y in zip(rows, hulls, strict=True)]
-    more = Undecided._make(np.repeat(x, len(rows), axis=0) for x in one)
-    return more._replace(boxes=hulls.reshape(-1, 4), uv=np.array(points))
+    points = np.array(
+        [_point(middles[x], _hull(middles[x], halves[x]), one.boxes[0], normal, jets) for x in rows]
+    )
+    # Boxes beside a curve may count as boxes on it: then the steps lead to boxes of another set.
+    there = [owner[(np.abs(middles - x) <= halves).all(axis=1)] for x in points]
+    keep = [k for k, x in enumerate(there) if len(x) == 0 or k in x]
+    hulls = np.array([_hull(middles[rows[k]], halves[rows[k]]) for k in keep])
+    more = Undecided._make(np.repeat(x, len(keep), axis=0) for x in one)
+    return more._replace(boxes=hulls.reshape(-1, 4), uv=points[keep])
 
 
 def _connected(low: Array, high: Array, size: Array, around: Flags) -> Indices:
@@ -88,12 +93,17 @@ def _hull(middles: Array, halves: Array) -> Array:
     return np.stack([(middles - halves).min(axis=0), (middles + halves).max(axis=0)], axis=1)
 
 
-def _point(middles: Array, hull: Array, normal: Array, jets: Jets) -> Array:
-    """Return a point (2,) with the normal, near the middle one of some boxes."""
+def _point(middles: Array, hull: Array, box: Array, normal: Array, jets: Jets) -> Array:
+    """Return a point (2,) with the normal in a box (4,), in the `hull` of small boxes if possible.
+
+    Gauss–Newton steps lead to it from the `middles` (k, 2) of the small boxes.
+    """
     starts = middles[:: len(middles) // STARTS + 1]
-    found = with_normal(starts, hull.T, normal, jets)
-    found = found if len(found) else starts
-    return found[len(found) // 2]
+    found = with_normal(starts, box.reshape(2, 2).T, normal, jets)
+    low, high = hull.T
+    own = found[((found >= low) & (found <= high)).all(axis=1)]
+    best = own if len(own) else found if len(found) else starts
+    return best[len(best) // 2]
 
 
 def with_normal(uv: Array, ends: Array, normal: Array, jets: Jets) -> Array:

@@ -60,13 +60,21 @@ def vase() -> gm.Surface:
     return gm.Surface.from_nurbs((2, 4), (conics(CIRCLE), knots), points, weights)
 
 
-def shaft() -> gm.Surface:
-    """Return a surface of revolution with two cylinders, of radii 1 and 1.5, closely together."""
-    r = np.concatenate([np.ones(9), [1.25], np.full(9, 1.5)])
-    points = np.array([[(a * x, a * y, k) for k, a in enumerate(r)] for x, y in CIRCLE])
+def cubic(r: Sequence[float], z: Sequence[float]) -> gm.Surface:
+    """Return a surface of revolution of degree 3, with straight parts at rows of points."""
+    points = np.array([[(a * x, a * y, b) for a, b in zip(r, z, strict=True)] for x, y in CIRCLE])
     knots = np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, len(r) - 2), np.ones(3)])
     weights = np.outer(WEIGHTS, np.ones(len(r)))
     return gm.Surface.from_nurbs((2, 3), (conics(CIRCLE), knots), points, weights)
+
+
+# Two cylinders close together, of the radii 1 and 1.5.
+shaft = partial(cubic, [*[1.0] * 9, 1.25, *[1.5] * 9], range(19))
+# A flat ring below a steep one, and two more rings.
+LID = (
+    [6.0, 5.5, 5.0, 4.5, 4.0, 3.5, *np.arange(4.0, 6.75, 0.5), *np.arange(6.25, 9.5, 0.5), 9.25],
+    [*[0.0] * 6, *[0.25] * 6, *[1.0] * 7, 1.25],
+)
 
 
 def on_top(x: Any, y: Any, z: Any) -> Any:
@@ -105,6 +113,7 @@ CASES = {
         shaft, (0.6, 0.8, 0.0), [CURVE, CURVE], 0,
         lambda x, y, z: np.hypot((x - 0.6) * (x - 0.9), (y - 0.8) * (y - 1.2)), 1e-9,
     ),
+    "lid": Case(partial(cubic, *LID), Z, [CURVE], 0, lambda x, y, z: z, 1e-9),
     "concentric circles": Case(
         partial(graph, "((u**2 + v**2 - 1/8) * (u**2 + v**2 - 1/2))**2"), Z,
         [REGULAR, CURVE, CURVE, CURVE], 1,
