@@ -55,3 +55,34 @@ def exact_place(net: ArrayLike, normal: ArrayLike) -> tuple[Fraction, Fraction] 
     u, v = (B * Q - C * P) / D, (B * P - A * Q) / D
     outside = min(u, v, 1 - u - v) < 0
     return None if outside or normals_at(vectors, u, v) @ n <= 0 else (u, v)
+
+
+def bezier(net: NDArray, weights: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Return points at barycentric coordinates, and derivatives by the first two of these."""
+    b200, b020, b002, b110, b101, b011 = np.moveaxis(net, -2, 0)
+    l1, l2, l3 = (weights[..., k, None] for k in range(3))
+    by1, by2, by3 = (
+        l1 * b200 + l2 * b110 + l3 * b101,
+        l1 * b110 + l2 * b020 + l3 * b011,
+        l1 * b101 + l2 * b011 + l3 * b002,
+    )
+    return l1 * by1 + l2 * by2 + l3 * by3, 2.0 * (by1 - by3), 2.0 * (by2 - by3)
+
+
+def by_brute_force(nets: NDArray, normals: NDArray) -> list[tuple[int, int, int]]:
+    """Return all points: number of the normal, number of the patch, sign of K; ascending.
+
+    Normals are on no boundary of a patch: the signs of U, V, W and of N·n decide alone.
+    """
+    found = []
+    for patch, net in enumerate(nets):
+        a, b, c, d, e = vectors_of(net)
+        A, B, C, P, Q = (normals @ x for x in (a, b, c, d, e))
+        D, U, V = A * C - B * B, B * Q - C * P, B * P - A * Q
+        W = D - U - V
+        inside = (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
+        for k in np.flatnonzero(inside & (D != 0)).tolist():
+            N = np.cross(U[k] * a + V[k] * b + D[k] * d, U[k] * b + V[k] * c + D[k] * e)
+            if N @ normals[k] > 0:
+                found.append((k, patch, 1 if D[k] > 0 else -1))
+    return sorted(found)

@@ -6,8 +6,18 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 from gaussmap.runtime.samples.report import SamplingReport
+from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+Array = NDArray[np.float64]
+EPS = 2.0**-52
+AXES = np.concatenate([np.eye(3), -np.eye(3)])
+TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
+SQUARE = ((0.0, 1.0), (0.0, 1.0))
+FIELDS = (
+    "points", "normals", "uv", "support", "gaussian_curvature", "mean_curvature", "normal_index",
+    "patch_index",
+)  # fmt: skip
 TURN = (0.0, 2.0 * np.pi)
 LATITUDES = (-np.pi / 2, np.pi / 2)
 
@@ -86,7 +96,10 @@ def broken(u: Any, v: Any) -> Any:
     raise RuntimeError("no such surface")
 
 
-BROKEN = gm.Surface.from_callable(broken, ((0.0, 1.0), (0.0, 1.0)), name="broken")
+# The position of a torus whose tube has waves.
+MINOR = "(7/20 + 3/50*sin(4*u + 3*v))"
+KNOBBY = (f"(1 + {MINOR}*cos(v))*cos(u)", f"(1 + {MINOR}*cos(v))*sin(u)", f"{MINOR}*sin(v)")
+BROKEN = gm.Surface.from_callable(broken, SQUARE, name="broken")
 # Control points and weights of a circle of four conics.
 CIRCLE = np.array(
     [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)], np.float64
@@ -190,6 +203,17 @@ def central_differences(f: Any, u: Any, v: Any, h: float) -> Any:
     points = f(u[:, None, None] + steps[:, None], v[:, None, None] + steps)
     weights = [(at, at), (first, at), (at, first), (second, at), (first, first), (at, second)]
     return np.stack([np.einsum("i,j,kijx->kx", *x, points) for x in weights], axis=1)
+
+
+def quotients(sums: list[Any]) -> Any:
+    """Return x, x_s, x_t, x_ss, x_st, x_tt (6, k, 3) from those of (x w, w)."""
+    point, w = [x[:, :3] for x in sums], [x[:, 3:] for x in sums]
+    x = point[0] / w[0]
+    x_s, x_t = ((point[k] - w[k] * x) / w[0] for k in (1, 2))
+    x_ss = (point[3] - 2.0 * w[1] * x_s - w[3] * x) / w[0]
+    x_st = (point[4] - w[1] * x_t - w[2] * x_s - w[4] * x) / w[0]
+    x_tt = (point[5] - 2.0 * w[2] * x_t - w[5] * x) / w[0]
+    return np.stack([x, x_s, x_t, x_ss, x_st, x_tt])
 
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])

@@ -21,6 +21,7 @@ import sympy
 from gaussmap.tools.cad.examples import box
 
 from .interface import CALLABLES, CLASSES
+from .shapes import SQUARE
 
 LONGEST_MESSAGE = 300
 # Quick tests try one of so many values, other ones for each parameter.
@@ -157,7 +158,6 @@ def parabola(t: Any) -> Any:
     return np.stack([t, t**2], axis=-1)
 
 
-SQUARE = ((0.0, 1.0), (0.0, 1.0))
 NORMALS, PLANE_NORMALS = gm.icosphere(1)[:7], gm.directions.circle(5)
 HEIGHTS = np.hypot(*np.meshgrid(np.arange(6.0), np.arange(5.0)))
 KNOTS = ((0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 1.0, 1.0))

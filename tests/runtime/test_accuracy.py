@@ -7,11 +7,10 @@ log(largest error) against log(cell size) over four grids.
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from .exact import Exact
+from ..exact import Exact
+from ..shapes import Array
 
-Array = NDArray[np.float64]
 THREE = ["torus", "ellipsoid_patch", "wavy_graph"]
 OTHERS = ["hyperboloid", "monkey_saddle", "enneper", "catenoid", "moebius_band", "dupin_cyclide"]
 FAR_FROM_THE_POLES = 0.5  # radians of latitude

@@ -6,12 +6,10 @@ from concurrent.futures import ThreadPoolExecutor
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from ..refusals import refused
+from ..shapes import AXES, Array
 
-Array = NDArray[np.float64]
-AXES = np.concatenate([np.eye(3), -np.eye(3)])
 NORMALS = np.concatenate([AXES, gm.fibonacci(300)])
 
 

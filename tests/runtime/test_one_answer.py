@@ -5,11 +5,8 @@ from collections.abc import Callable
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from ..shapes import CIRCLE, MERIDIAN, WEIGHTS, bezier
-
-Array = NDArray[np.float64]
+from ..shapes import CIRCLE, MERIDIAN, WEIGHTS, Array, bezier
 
 
 def elevated(curves: Array) -> Array:

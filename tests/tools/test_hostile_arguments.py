@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from ..refusals import refused
-
-TORUS = gm.surfaces.torus()
+from ..shapes import TORUS
 
 
 @pytest.fixture(scope="module")

@@ -15,9 +15,9 @@ from gaussmap.symbolic import BezierTriangle
 from hypothesis import given
 
 from ..refusals import refused as sentence_of
+from ..shapes import SQUARE
 from ..texts import texts
 
-SQUARE = ((0.0, 1.0), (0.0, 1.0))
 CODE = "__import__('os').system('touch ran')"
 
 RUNS = [

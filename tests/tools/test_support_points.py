@@ -11,10 +11,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from ..products import covering
 from ..refusals import refused
+from ..shapes import TORUS
 from .cad import made
 
 TURN = (0.0, "2*pi")
-TORUS = gm.surfaces.torus()
 DIRECTIONS = np.concatenate([gm.directions.random(40, seed=1), np.eye(3), -np.eye(3)])
 HOLE = [[(1, 1), (4, 1), (4, 4), (1, 4)], [(2, 2), (3, 2), (3, 3)]]
 

@@ -8,6 +8,7 @@ import tracemalloc
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import gaussmap as gm
@@ -15,12 +16,11 @@ import numpy as np
 import pytest
 from gaussmap.runtime.base import errors, memory
 from gaussmap.runtime.base.memory import estimate
-from gaussmap.tools.cad import examples
 
 from ...refusals import refused
+from ...shapes import TORUS
 
 directions = gm.directions
-TORUS = gm.surfaces.torus()
 CIRCLE = gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), True)
 
 
@@ -100,9 +100,9 @@ def test_estimates_are_near(known: bool, name: str, monkeypatch: pytest.MonkeyPa
     assert max(asked) / peak < 2.0
 
 
-def test_counts_on_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_counts_on_parts(parts: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a box, whose faces are flat, samples take two fifths of what is expected of others."""
-    asked_for, peak = measured(lambda: gm.sample(examples.box(), 10_000), monkeypatch)
+    asked_for, peak = measured(lambda: gm.sample(parts.box(), 10_000), monkeypatch)
     assert 0.8 < asked_for[0] / peak < 3.0
     assert max(asked_for) / peak < 3.0
 
@@ -165,12 +165,15 @@ def test_commands(
         lambda: gm.curves.sample(CIRCLE, 10**8),
         lambda: gm.fit(TORUS, (10**4, 10**4)),
         lambda: gm.sample(TORUS, normals=np.eye(3))[np.broadcast_to(np.int8(0), 10**7)],
-        lambda: gm.sample(examples.box(), 10**7),
-        lambda: gm.sample(examples.box(), coverage=5e-3, density="uniform"),
     ],
 )
 def test_calls(call: Callable[[], Any], one_gib: None) -> None:
     refused(REFUSED, call)
+
+
+def test_calls_on_parts(parts: ModuleType, one_gib: None) -> None:
+    refused(REFUSED, gm.sample, parts.box(), 10**7)
+    refused(REFUSED, gm.sample, parts.box(), coverage=5e-3, density="uniform")
 
 
 def test_what_is_found_or_given_counts(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,10 +8,9 @@ import pytest
 from gaussmap.runtime.directions.regions import angles_between
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-AXES = np.concatenate([np.eye(3), -np.eye(3)])
+from ...shapes import AXES, Array
+
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
 TETRAHEDRON = CUBE[[0, 3, 5, 6]]
 ACCURACY = 1e-12  # degrees: some ε of a radian, and coordinates that are rounded

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import EPS
 
-ULP = 2.0**-52
 FREQUENCIES = [1, 2, 3, 5, 8, 16, 33]
 
 
@@ -49,7 +49,7 @@ def test_icosphere_is_symmetric(frequency):
 
 def test_icosphere_begins_with_vertices_then_edges():
     normals = gm.icosphere(4)
-    np.testing.assert_allclose(normals[:12], gm.icosphere(1), rtol=0, atol=2 * ULP)
+    np.testing.assert_allclose(normals[:12], gm.icosphere(1), rtol=0, atol=2 * EPS)
     # on an edge, the planes of symmetry of the icosahedron: the mean of the ends, twice refined
     edge = gm.icosphere(2)[12:]
     assert len(edge) == 30
@@ -82,7 +82,7 @@ def test_refinements_that_no_memory_holds(make):
 def test_fibonacci_counts_and_lengths(count):
     normals = gm.fibonacci(count)
     assert normals.shape == (count, 3)
-    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
+    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * EPS)
     assert (np.diff(normals[:, 2]) < 0).all()
     assert len(np.unique(normals, axis=0)) == count
 
@@ -110,7 +110,7 @@ def test_healpix_lies_on_rings(nside):
     normals = gm.directions.healpix(nside)
     assert normals.shape == (12 * nside**2, 3)
     assert normals.flags.c_contiguous
-    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
+    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * EPS)
     ring = np.arange(1, 4 * nside)
     north = np.where(ring < nside, 1 - ring**2 / (3 * nside**2), 4 / 3 - 2 * ring / (3 * nside))[
         : 2 * nside
@@ -118,7 +118,7 @@ def test_healpix_lies_on_rings(nside):
     heights = np.concatenate([north, -north[-2::-1]])
     counts = 4 * np.minimum(np.minimum(ring, 4 * nside - ring), nside)
     # where z is near 1 its rounding is that of the angle
-    np.testing.assert_allclose(normals[:, 2], np.repeat(heights, counts), rtol=0, atol=8 * ULP)
+    np.testing.assert_allclose(normals[:, 2], np.repeat(heights, counts), rtol=0, atol=8 * EPS)
     first = np.arctan2(*normals[:4, 1::-1].T)
     np.testing.assert_allclose(np.mod(first, 2 * np.pi), np.pi / 4 * np.array([1, 3, 5, 7]))
 
@@ -141,7 +141,7 @@ def test_healpix_names_what_it_needs(monkeypatch):
 
 def test_random_normals_are_those_of_their_seed():
     normals = gm.directions.random(1000, seed=3)
-    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
+    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * EPS)
     assert (gm.directions.random(1000, seed=3) == normals).all()
     assert (gm.directions.random(10, seed=3) == normals[:10]).all()
     assert (gm.directions.random(1000, seed=4) != normals).all()
@@ -180,7 +180,7 @@ def test_extreme_directions():
     given_ = [[tiny, 0, 0], [0, -huge, 0], [huge, huge, huge], [tiny, tiny, 0], [huge, tiny, -huge]]
     third, half = 3**-0.5, 2**-0.5
     expected = [[1, 0, 0], [0, -1, 0], [third, third, third], [half, half, 0], [half, 0, -half]]
-    np.testing.assert_allclose(as_normals(given_), expected, rtol=0, atol=2 * ULP)
+    np.testing.assert_allclose(as_normals(given_), expected, rtol=0, atol=2 * EPS)
 
 
 def test_unit_normals_are_not_copied():
@@ -189,7 +189,7 @@ def test_unit_normals_are_not_copied():
     for changed in (np.asfortranarray(normals), normals.astype(np.float32), normals[:, ::-1]):
         assert as_normals(changed) is not changed
     longer = normals.copy()
-    longer[4321] *= 1 + 4 * ULP
+    longer[4321] *= 1 + 4 * EPS
     assert as_normals(longer) is not longer
 
 
@@ -206,7 +206,7 @@ def test_what_is_taken_for_unit_is_kept_when_it_is_normalized():
 @given(st.lists(st.tuples(*[st.floats(-1e300, 1e300)] * 3).filter(any), min_size=1, max_size=20))
 def test_any_direction(vectors):
     normals = as_normals(vectors)
-    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
+    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * EPS)
     np.testing.assert_array_equal(as_normals(normals), normals)
     assert (np.sign(normals) * np.sign(vectors) >= 0).all()
     largest = np.abs(vectors).argmax(axis=1)

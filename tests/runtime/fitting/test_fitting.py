@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import egg_surface
+from ...shapes import SQUARE, TURN, egg_surface
 
 Array = NDArray[Any]
-SQUARE = ((0.0, 1.0), (0.0, 1.0))
 
 
 def graph(z: Callable[[Array, Array], Array], scale: float = 1.0, name="graph") -> gm.Surface:
@@ -190,8 +189,6 @@ def test_data_that_are_rougher_than_the_tolerance() -> None:
 
 
 # --- callables ------------------------------------------------------------------------------------
-
-TURN = (0.0, 2.0 * np.pi)
 
 
 @pytest.mark.parametrize("change", [1e-6, 1.0])

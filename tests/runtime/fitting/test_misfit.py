@@ -3,14 +3,12 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from ...products import covering
-from ...shapes import egg_surface, unit
+from ...shapes import Array, egg_surface, unit
 from .test_fitting import fillet as profile
 from .test_fitting import graph
 
-Array = NDArray[np.float64]
 GENERATOR = np.random.default_rng(3)
 
 

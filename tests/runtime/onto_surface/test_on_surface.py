@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 from gaussmap.runtime.onto_surface import on_surface
 from gaussmap.runtime.onto_surface.on_surface import geometry_of
-from gaussmap.runtime.samples.fields import ARRAY_NAMES, ARRAY_NAMES_ON_SURFACE
 
+from ...exact import Exact
 from ...products import covering
 from ...refusals import refused
-from ...shapes import egg, egg_surface, normals_at, same, same_chunks, unit
-from ..exact import Exact
+from ...shapes import FIELDS, egg, egg_surface, normals_at, same, same_chunks, unit
 
 CELLS = (12, 12)
 NORMAL_ERROR = 1e-12  # radians
@@ -62,7 +61,7 @@ def test_samples_of_the_spline_are_those_of_the_spline_itself():
     assert samples.report == others.report
     assert samples.report.on == "spline"
     assert samples.report.unrefined is samples.on_surface is samples.surface is None
-    assert samples.fields == ARRAY_NAMES
+    assert samples.fields == FIELDS
     for name, array in samples.arrays().items():
         np.testing.assert_array_equal(array, getattr(others, name))
 
@@ -75,7 +74,7 @@ def test_chosen_fields_are_those_of_all(fields, dtype):
     for request_ in MIXED:
         every = gm.sample("torus", **request_, cells=CELLS, on="surface")
         some = gm.sample("torus", **request_, cells=CELLS, fields=fields, dtype=dtype, on="surface")
-        expected = ARRAY_NAMES_ON_SURFACE
+        expected = (*FIELDS, "on_surface")
         if every.report.proved is not None:
             expected = (*expected, "uv_radius", "component")
             expected = tuple(x for x in expected if x != "patch_index")

@@ -9,14 +9,23 @@ from gaussmap.runtime.onto_surface.newton import FOUND, Target, evaluate_on_surf
 from gaussmap.runtime.onto_surface.repeats import kept_once
 from numpy.typing import NDArray
 
-from ...shapes import HALF, MERIDIAN, egg, klein, normals_at, random_rotation, revolved, same_chunks
-from ..exact import Exact
-from ..proof.judge import surface_of
+from ...exact import Exact
+from ...shapes import (
+    HALF,
+    KNOBBY,
+    LATITUDES,
+    MERIDIAN,
+    TURN,
+    Array,
+    egg,
+    klein,
+    normals_at,
+    random_rotation,
+    revolved,
+    same_chunks,
+)
 
-Array = NDArray[np.float64]
 NORMAL_ERROR = 1e-12  # radians
-FULL = (0.0, 2.0 * np.pi)
-LATITUDES = (-np.pi / 2, np.pi / 2)
 MOTIONS = [(0.0, 1.0), (1e6, 1.0), (0.0, 1e9), (0.0, 1e-9)]
 
 
@@ -53,7 +62,7 @@ def started(surface: gm.Surface, normals: Array, signs: Array, uv: Array) -> Tar
 def moved(f: Callable[[Array, Array], Array], seed: int, shift: float, factor: float) -> gm.Surface:
     turn = random_rotation(seed)
     return gm.Surface.from_callable(
-        lambda u, v: factor * (f(u, v) @ turn.T) + shift, (FULL, LATITUDES), (True, "pole")
+        lambda u, v: factor * (f(u, v) @ turn.T) + shift, (TURN, LATITUDES), (True, "pole")
     )
 
 
@@ -92,7 +101,7 @@ def test_samples_of_a_coarse_spline_go_on_across_the_ends_of_a_period(sign: floa
         u, v = (sign * x + 0.5 * np.sin(sign * x + 1.0) + 0.3 for x in (u, v))
         return np.asarray(torus.function(u, v))
 
-    surface = gm.Surface.from_callable(uneven, (FULL, FULL), (True, True))
+    surface = gm.Surface.from_callable(uneven, (TURN, TURN), (True, True))
     samples, numbers = refined(surface, (7, 7), gm.fibonacci(2000))
     assert (np.bincount(numbers) == 2).all()
     assert (samples.state == FOUND).all()
@@ -268,7 +277,7 @@ def test_a_point_that_is_covered_twice_is_two_samples() -> None:
     """A torus around which u goes twice: at one point the parameters are a turn apart."""
     torus = gm.surfaces.torus()
     twice = gm.Surface.from_callable(
-        lambda u, v: torus.evaluate(u % (2.0 * np.pi), v), ((0.0, 4.0 * np.pi), FULL), (True, True)
+        lambda u, v: torus.evaluate(u % (2.0 * np.pi), v), ((0.0, 4.0 * np.pi), TURN), (True, True)
     )
     normals = gm.fibonacci(200)
     samples = gm.sample(twice, normals=normals, cells=(40, 16))
@@ -299,8 +308,11 @@ def not_listed(samples: gm.Samples, count: int) -> NDArray[np.bool_]:
 
 
 CURVED: dict[str, tuple[gm.Surface, tuple[bool, bool]]] = {
-    "figure 8": (gm.Surface.from_callable(klein, (FULL, FULL), (False, True)), (False, True)),
-    "knobby": (surface_of("knobby"), (True, True)),
+    "figure 8": (gm.Surface.from_callable(klein, (TURN, TURN), (False, True)), (False, True)),
+    "knobby": (
+        gm.Surface.from_sympy(KNOBBY, ("u", "v"), (TURN, TURN), (True, True)),
+        (True, True),
+    ),
     "wavy": (gm.surfaces.wavy_graph(amplitude=0.1, frequency=8.0), (False, False)),
 }
 # Of the figure 8, one that was found twice at one place, with the default number of cells.
@@ -391,8 +403,8 @@ def test_every_normal_once(
 
 def test_poles_at_the_ends_of_u() -> None:
     """The same surface with exchanged parameters has opposite normals."""
-    along_v = gm.Surface.from_callable(egg, (FULL, LATITUDES), (True, "pole"))
-    along_u = gm.Surface.from_callable(lambda v, u: egg(u, v), (LATITUDES, FULL), ("pole", True))
+    along_v = gm.Surface.from_callable(egg, (TURN, LATITUDES), (True, "pole"))
+    along_u = gm.Surface.from_callable(lambda v, u: egg(u, v), (LATITUDES, TURN), ("pole", True))
     normals = gm.fibonacci(500)
     first, second = check_once(along_v, 16, normals), check_once(along_u, 16, -normals)
     order = np.argsort(first.normal_index), np.argsort(second.normal_index)

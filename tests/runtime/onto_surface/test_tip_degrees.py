@@ -3,12 +3,9 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from ...products import covering
-from ...shapes import unit
-
-Array = NDArray[np.float64]
+from ...shapes import Array, unit
 
 # The amplitude and the number of waves round the axis, and how much the ends lean: convex cones,
 # and others that have normals twice, or with the other sign.

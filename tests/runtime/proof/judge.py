@@ -19,7 +19,7 @@ from gaussmap.runtime.proof.kernels.answers import KINDS
 from gaussmap.symbolic.surfaces import CATALOGUE
 from numpy.typing import NDArray
 
-from ...shapes import unit
+from ...shapes import KNOBBY, unit
 
 Array = NDArray[Any]
 
@@ -27,13 +27,9 @@ Array = NDArray[Any]
 
 TURN, OPEN, AROUND = (0, "2*pi"), "open", "periodic"
 SQUARE = ((-1, 1), (-1, 1))
-MINOR = "(7/20 + 3/50*sin(4*u + 3*v))"
 # Position, domain, boundary conditions of u and v; others are in the catalogue.
 FORMULAS: dict[str, tuple[Any, Any, Any]] = {
-    "knobby": (
-        (f"(1 + {MINOR}*cos(v))*cos(u)", f"(1 + {MINOR}*cos(v))*sin(u)", f"{MINOR}*sin(v)"),
-        (TURN, TURN), (AROUND, AROUND),
-    ),
+    "knobby": (KNOBBY, (TURN, TURN), (AROUND, AROUND)),
     "waves": (("u", "v", "sin(3*u)*cos(3*v)/5"), SQUARE, (OPEN, OPEN)),
     # The third derivatives of its height are those of functions of one parameter.
     "sum": (("u", "v", "exp(u) + cos(2*v)/2"), SQUARE, (OPEN, OPEN)),

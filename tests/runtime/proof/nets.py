@@ -17,7 +17,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.spatial import KDTree
 
-from ...shapes import CIRCLE, WEIGHTS, conics
+from ...shapes import CIRCLE, WEIGHTS, conics, quotients
 from .judge import Array, unit
 
 # The cells of a patch along each parameter; points of two patches this near, relative to the size
@@ -35,17 +35,6 @@ def bernstein(degree: int, t: Array, order: int) -> Array:
     for q in range(p + 1, degree + 1):
         rows = q * (np.pad(rows, ((0, 0), (1, 0))) - np.pad(rows, ((0, 0), (0, 1))))
     return rows
-
-
-def quotients(sums: list[Array]) -> Array:
-    """Return x, x_s, x_t, x_ss, x_st, x_tt (6, k, 3) from those of (x w, w)."""
-    point, w = [x[:, :3] for x in sums], [x[:, 3:] for x in sums]
-    x = point[0] / w[0]
-    x_s, x_t = ((point[k] - w[k] * x) / w[0] for k in (1, 2))
-    x_ss = (point[3] - 2.0 * w[1] * x_s - w[3] * x) / w[0]
-    x_st = (point[4] - w[1] * x_t - w[2] * x_s - w[4] * x) / w[0]
-    x_tt = (point[5] - 2.0 * w[2] * x_t - w[5] * x) / w[0]
-    return np.stack([x, x_s, x_t, x_ss, x_st, x_tt])
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,10 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
-from ...shapes import CIRCLE, MERIDIAN, WEIGHTS, conics
+from ...shapes import AXES, CIRCLE, MERIDIAN, WEIGHTS, conics
 from .judge import Array, counts, curvature_at, near, new_index, normals_at, nurbs, unit
 from .nets import bernstein
 
-AXES = np.concatenate([np.eye(3), -np.eye(3)])
 AROUND = unit(np.concatenate([gm.icosphere(8), AXES]))
 
 

@@ -12,7 +12,7 @@ from gaussmap.runtime.search import exact, long_integers
 from hypothesis import given
 from hypothesis import strategies as st
 
-from .forms import fractions, power_form
+from ...nets import in_fractions, vectors_of
 
 ALIGNED = np.array([n for n in product((-1.0, 0.0, 1.0), repeat=3) if any(n)])
 PERIODIC: Any = (("periodic", "periodic"), ("periodic", "periodic"))
@@ -58,7 +58,7 @@ def test_forms_on_integers_are_those_of_fractions() -> None:
     vectors, exponent = long_integers.patch_vectors(spline, np.arange(spline.patches))
     unit = Fraction(2) ** exponent / Fraction(spline.scale)
     for patch in range(0, spline.patches, 7):
-        expected = 16 * power_form(fractions(spline.control_nets[patch]))
+        expected = 8 * vectors_of(in_fractions(spline.control_nets[patch]))
         assert (vectors[..., patch] * unit == expected).all()
 
 

@@ -12,12 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from ...nets import by_brute_force
 from ...products import covering
-from ...shapes import klein_bottle, moved
-from .forms import by_brute_force
-
-Array = NDArray[np.float64]
-TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
+from ...shapes import TORUS, Array, klein_bottle, moved
 
 
 def count_preimages(

@@ -13,14 +13,11 @@ from gaussmap.runtime.search.patch_index import Index, index_of
 from gaussmap.runtime.search.search import Hits, find
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from ...nets import bezier
 from ...products import covering
-from ...shapes import unit
-from ..spline.test_spline import bezier
+from ...shapes import AXES, Array, unit
 
-Array = NDArray[np.float64]
-AXES = np.concatenate([np.eye(3), -np.eye(3)])
 NORMALS = np.concatenate([gm.fibonacci(60), AXES])
 OPEN = ("open", "open")
 

@@ -5,14 +5,12 @@ import numpy as np
 import pytest
 from gaussmap.runtime.spline.nets import NetSpline
 from gaussmap.tools.meshes.creased import CreasedMesh
-from numpy.typing import NDArray
 
+from ...nets import bezier
 from ...refusals import refused
-from ...shapes import unit
+from ...shapes import Array, unit
 from .test_nets import octants, powell_sabin
-from .test_spline import bezier
 
-Array = NDArray[np.float64]
 PARTS = [1, 3]
 
 

@@ -10,11 +10,10 @@ from gaussmap.runtime.spline.nets import NetSpline
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
+from ...nets import by_brute_force, in_fractions
 from ...refusals import refused
-from ...shapes import unit
-from ..search.forms import by_brute_force, fractions
+from ...shapes import Array, unit
 
-Array = NDArray[np.float64]
 SYMMETRIC = np.array([x for x in np.ndindex(5, 5, 5) if x != (2, 2, 2)]) - 2.0
 
 
@@ -85,7 +84,7 @@ def check_brute_force(spline: NetSpline, normals: Array) -> None:
     rows = [found.normal_index, found.patch_index, np.sign(found.gaussian_curvature)]
     points = np.stack(rows, axis=1).astype(int)
     assert sorted(map(tuple, points.tolist())) == by_brute_force(
-        fractions(spline.control_nets), fractions(normals)
+        in_fractions(spline.control_nets), in_fractions(normals)
     )
 
 

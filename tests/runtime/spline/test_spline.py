@@ -7,12 +7,10 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
+from ...nets import bezier
 from ...products import covering
 from ...refusals import refused
-from ...shapes import klein_bottle
-
-SQUARE = ((0.0, 1.0), (0.0, 1.0))
-TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
+from ...shapes import SQUARE, TORUS, klein_bottle
 
 # The corners u = 1 and v = 1 of the triangles south, east, north, west of a cell, from its centre.
 CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
@@ -41,18 +39,6 @@ def made(name):
         points = np.random.default_rng(0).random((7, 6, 3))
         return gm.Surface.from_grid(points, periodic=(False, True))
     return gm.surfaces.surface(name)
-
-
-def bezier(net, weights):
-    """Return points at barycentric coordinates, and derivatives by the first two of these."""
-    b200, b020, b002, b110, b101, b011 = np.moveaxis(net, -2, 0)
-    l1, l2, l3 = (weights[..., k, None] for k in range(3))
-    by1, by2, by3 = (
-        l1 * b200 + l2 * b110 + l3 * b101,
-        l1 * b110 + l2 * b020 + l3 * b011,
-        l1 * b101 + l2 * b011 + l3 * b002,
-    )
-    return l1 * by1 + l2 * by2 + l3 * by3, 2.0 * (by1 - by3), 2.0 * (by2 - by3)
 
 
 # --- exactness ------------------------------------------------------------------------------------

@@ -4,13 +4,12 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.spline.nets import AnySpline
+from gaussmap.runtime.spline.poles import ring_around
 from gaussmap.runtime.spline.tips import tips_of
 from numpy.typing import NDArray
 
 from ...products import covering
-from ...shapes import random_rotation, unit
-
-Array = NDArray[np.float64]
+from ...shapes import Array, random_rotation, unit
 
 HALF = np.pi / 3
 TURN = random_rotation(5)
@@ -132,3 +131,15 @@ def test_smooth_poles_are_no_tips() -> None:
 def test_a_spline_without_collapsed_sides_has_no_tips() -> None:
     assert tips_of(gm.fit("torus", (8, 8))) is None
     assert tips_of(gm.Spline.from_nets(gm.fit("plane", (4, 4)).control_nets)) is None
+
+
+@pytest.mark.parametrize(("count", "error"), [(8, 1.6e-9), (64, 1.6e-9), (512, 4e-9)])
+def test_a_ring_hardly_moves(count: int, error: float):
+    """Its radius is 0.1: the mean of the largest errors of twenty planes."""
+    rng, angles = np.random.default_rng(0), 2.0 * np.pi * np.arange(count) / count
+    errors = []
+    for _ in range(20):
+        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0][:2]
+        ring = 0.1 * np.stack([np.cos(angles), np.sin(angles)], axis=1) @ axes + (1.0, 0.3, 0.2)
+        errors.append(np.abs(ring_around(ring)[0] - ring).max())
+    assert np.mean(errors) < error

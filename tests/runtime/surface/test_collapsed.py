@@ -3,13 +3,11 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from ...products import covering
+from ...shapes import TURN, Array
 from .test_poles import ROTATION, SHAPES, SPHERE
 
-Array = NDArray[np.float64]
-TURN = 0.0, 2 * np.pi
 DISK = (0.0, 1.0), TURN
 PERIODIC, OPEN = ("periodic", "periodic"), ("open", "open")
 

@@ -6,9 +6,7 @@ import pytest
 from gaussmap.runtime.surface.derivatives import NAMES
 
 from ...refusals import refused
-from ...shapes import saddle
-
-SQUARE = ((0.0, 1.0), (0.0, 1.0))
+from ...shapes import SQUARE, saddle
 
 
 def places(domain, count=40, seed=0):

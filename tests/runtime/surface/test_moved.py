@@ -8,9 +8,8 @@ import pytest
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import random_rotation, saddle
+from ...shapes import SQUARE, random_rotation, saddle
 
-SQUARE = ((0.0, 1.0), (0.0, 1.0))
 ROTATION = random_rotation(1)
 MAPS = {
     "rotated": ROTATION,

@@ -16,8 +16,7 @@ from splipy.surface import Surface
 from splipy.volume import Volume
 
 from ...refusals import refused
-from ...shapes import CIRCLE, HALF, MERIDIAN, WEIGHTS, revolved
-from ..proof.nets import quotients
+from ...shapes import CIRCLE, HALF, MERIDIAN, WEIGHTS, quotients, revolved
 
 RNG = np.random.default_rng(8)
 

@@ -5,14 +5,12 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.spline.poles import ring_around
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...nets import in_fractions
 from ...products import covering
-from ...shapes import egg, on_sphere, random_rotation
-from ..search.forms import fractions
+from ...shapes import Array, egg, on_sphere, random_rotation
 
-Array = NDArray[np.float64]
 SPHERE = (0.0, 2 * np.pi), (-np.pi / 2, np.pi / 2)
 ROTATION = random_rotation(1)  # no plane of symmetry of a surface is one of the coordinates
 
@@ -44,7 +42,9 @@ def pole_and_offsets(spline: gm.Spline, end: int) -> tuple[Array, Array]:
 
     They are the sums and the differences of the first ring of coefficients and the ghosts.
     """
-    ring, ghosts = fractions(spline.coefficients[1:-1, (-2, -1) if end else (1, 0)]).swapaxes(0, 1)
+    ring, ghosts = in_fractions(spline.coefficients[1:-1, (-2, -1) if end else (1, 0)]).swapaxes(
+        0, 1
+    )
     return ring + ghosts, ring - ghosts
 
 
@@ -81,18 +81,6 @@ def test_the_ring_at_a_pole_is_in_one_plane(shape: str, shift: float, cells: tup
         normal = np.cross(offsets[0], offsets[1])
         assert normal.any()
         assert not (offsets @ normal).any()
-
-
-@pytest.mark.parametrize(("count", "error"), [(8, 1.6e-9), (64, 1.6e-9), (512, 4e-9)])
-def test_a_ring_hardly_moves(count: int, error: float):
-    """Its radius is 0.1: the mean of the largest errors of twenty planes."""
-    rng, angles = np.random.default_rng(0), 2.0 * np.pi * np.arange(count) / count
-    errors = []
-    for _ in range(20):
-        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0][:2]
-        ring = 0.1 * np.stack([np.cos(angles), np.sin(angles)], axis=1) @ axes + (1.0, 0.3, 0.2)
-        errors.append(np.abs(ring_around(ring)[0] - ring).max())
-    assert np.mean(errors) < error
 
 
 @pytest.mark.parametrize("shape", SHAPES)

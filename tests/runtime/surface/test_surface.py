@@ -10,9 +10,8 @@ from gaussmap.symbolic.reading import FUNCTIONS
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import saddle, tube
+from ...shapes import SQUARE, saddle, tube
 
-SQUARE = ((0.0, 1.0), (0.0, 1.0))
 TURN = ((0.0, 2 * np.pi), (0.0, 2 * np.pi))
 
 

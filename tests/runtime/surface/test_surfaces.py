@@ -13,9 +13,9 @@ import pytest
 import sympy as sp
 from gaussmap.symbolic.surfaces import CATALOGUE
 
+from ...exact import Exact
 from ...products import covering
 from ...refusals import refused
-from ..exact import Exact
 
 NAMES = list(CATALOGUE)
 

@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 
 from ...refusals import refused
-from ...shapes import BROKEN
-
-TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
+from ...shapes import BROKEN, TORUS
 
 
 def many(*arguments: Any, **named: Any) -> list[Any]:

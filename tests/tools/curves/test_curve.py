@@ -6,9 +6,7 @@ import pytest
 import sympy as sp
 
 from ...refusals import refused
-
-ULP = 2.0**-52
-TURN = (0.0, 2 * np.pi)
+from ...shapes import EPS, TURN
 
 
 def ellipse(t):
@@ -39,7 +37,7 @@ def test_sympy_and_callable_are_the_same_curve():
     for curve in (by_text, by_symbol):
         assert (curve.domain, curve.periodic) == (TURN, True)
         assert gm.curves.fit(curve).pieces == 64
-        np.testing.assert_allclose(curve.evaluate(places), ellipse(places), rtol=0, atol=4 * ULP)
+        np.testing.assert_allclose(curve.evaluate(places), ellipse(places), rtol=0, atol=4 * EPS)
 
 
 def test_constant_expressions_and_scalars():
@@ -79,7 +77,7 @@ NO_DOMAIN = [(0,), (0, 1, 2), (1, 0), (0, 0), (0, np.inf), (np.nan, 1), None, "a
         *((gm.curves.fit, (ELLIPSE, x), "pieces must be") for x in (0, -3, 2.0, True)),
         (gm.curves.fit, (ELLIPSE, 2), "at least 3 pieces"),
         (gm.curves.fit, (gm.surfaces.torus(),), "takes a Curve, not"),
-        (gm.curves.fit, (CALLABLE(ellipse, (1.0, 1.0 + 8 * ULP)),), "too narrow"),
+        (gm.curves.fit, (CALLABLE(ellipse, (1.0, 1.0 + 8 * EPS)),), "too narrow"),
     ],
 )  # fmt: skip
 def test_unusable_arguments(call, arguments, complaint):
@@ -109,7 +107,7 @@ def test_points_lie_near_the_curve_through_them():
     curve = gm.curves.Curve.from_points(points)
     assert (curve.domain, curve.periodic) == ((0.0, 6.0), False)
     assert gm.curves.fit(curve).pieces == 6
-    np.testing.assert_allclose(curve.evaluate(np.arange(7)), points, rtol=0, atol=100 * ULP)
+    np.testing.assert_allclose(curve.evaluate(np.arange(7)), points, rtol=0, atol=100 * EPS)
     errors = []
     for count in (32, 64):
         points = ellipse(2 * np.pi * np.arange(count) / count)
@@ -146,7 +144,7 @@ def test_quadratics_are_reproduced(pieces):
     """Up to rounding: a few roundings of each of a few terms."""
     spline = gm.curves.fit(PARABOLA, pieces)
     places = np.linspace(-1, 2, 101)
-    np.testing.assert_allclose(spline.evaluate(places), parabola(places), rtol=0, atol=200 * ULP)
+    np.testing.assert_allclose(spline.evaluate(places), parabola(places), rtol=0, atol=200 * EPS)
     kappa = 6 / np.hypot(1, 6 * places - 2) ** 3
     np.testing.assert_allclose(spline.curvature(places), kappa, rtol=1e-12 * pieces)
     normal = np.stack([6 * places - 2, -np.ones_like(places)], axis=-1)
@@ -157,7 +155,7 @@ def test_quadratics_are_reproduced(pieces):
 def test_ends_of_an_open_curve_are_met():
     spline = gm.curves.fit(gm.curves.Curve.from_callable(ellipse, (0.0, 2.0)), 10)
     ends = spline.evaluate(spline.domain)
-    np.testing.assert_allclose(ends, ellipse(np.array([0.0, 2.0])), rtol=0, atol=8 * ULP)
+    np.testing.assert_allclose(ends, ellipse(np.array([0.0, 2.0])), rtol=0, atol=8 * EPS)
 
 
 @pytest.mark.parametrize("domain", [(0.3, 2.0), TURN], ids=["open", "closed"])
@@ -182,12 +180,12 @@ def test_control_points_give_the_spline():
     spline = gm.curves.fit(EIGHT, 24)
     assert spline.control_points.shape == (24, 3, 2)
     ends = spline.evaluate(spline.joints)
-    np.testing.assert_allclose(spline.control_points[:, 0], ends[:-1], rtol=0, atol=8 * ULP)
-    np.testing.assert_allclose(spline.control_points[:, 2], ends[1:], rtol=0, atol=8 * ULP)
+    np.testing.assert_allclose(spline.control_points[:, 0], ends[:-1], rtol=0, atol=8 * EPS)
+    np.testing.assert_allclose(spline.control_points[:, 2], ends[1:], rtol=0, atol=8 * EPS)
     middles = spline.evaluate((spline.joints[:-1] + spline.joints[1:]) / 2)
     weights = np.array([0.25, 0.5, 0.25])
     by_points = np.einsum("j,kjx->kx", weights, spline.control_points)
-    np.testing.assert_allclose(middles, by_points, rtol=0, atol=16 * ULP)
+    np.testing.assert_allclose(middles, by_points, rtol=0, atol=16 * EPS)
 
 
 def test_closed_splines_wrap():
@@ -195,7 +193,7 @@ def test_closed_splines_wrap():
     t = np.array([0.5, 3.0])
     for turns in (-2, 1):
         moved = spline.evaluate(t + 2 * np.pi * turns)
-        np.testing.assert_allclose(moved, spline.evaluate(t), rtol=0, atol=64 * ULP)
+        np.testing.assert_allclose(moved, spline.evaluate(t), rtol=0, atol=64 * EPS)
     assert (spline.joint_normals[0] == spline.joint_normals[-1]).all()
     assert (spline.coefficients[:2] == spline.coefficients[-2:]).all()
 

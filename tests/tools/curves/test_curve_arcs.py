@@ -5,9 +5,9 @@ from collections.abc import Callable
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...shapes import Array
+
 Curve = gm.curves.Curve
 
 

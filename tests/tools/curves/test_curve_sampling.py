@@ -14,11 +14,8 @@ from numpy.typing import NDArray
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import EPS, TURN, Array
 
-Array = NDArray[np.float64]
-
-ULP = 2.0**-52
-TURN = (0.0, 2 * np.pi)
 AXES = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 
 
@@ -69,7 +66,7 @@ def is_sane(samples: gm.curves.CurveSamples) -> None:
     fields = (samples.points, samples.normals, samples.parameters, samples.support)
     assert all(np.isfinite(x).all() for x in (*fields, samples.curvature))
     # two normals that differ by rounding may share a place
-    rounding = 8 * ULP * np.abs(samples.parameters).max(initial=0.0)
+    rounding = 8 * EPS * np.abs(samples.parameters).max(initial=0.0)
     assert (np.diff(samples.parameters) >= -rounding).all()
     assert (np.diff(samples.piece_index) >= 0).all()
     assert len(samples) == samples.report.samples == len(samples.points)
@@ -208,8 +205,8 @@ def test_samples_of_an_ellipse() -> None:
     assert (samples.support == np.einsum("kx,kx->k", samples.normals, samples.points)).mean() > 0.5
     places = samples.parameters
     # t = −B/A: both lose a few roundings of |p'|; the step and the number of pieces cancel
-    np.testing.assert_allclose(spline.normals(places), samples.normals, rtol=0, atol=200 * ULP)
-    np.testing.assert_allclose(spline.evaluate(places), samples.points, rtol=0, atol=200 * ULP)
+    np.testing.assert_allclose(spline.normals(places), samples.normals, rtol=0, atol=200 * EPS)
+    np.testing.assert_allclose(spline.evaluate(places), samples.points, rtol=0, atol=200 * EPS)
     np.testing.assert_allclose(spline.curvature(places), samples.curvature, rtol=1e-10)
 
 
@@ -221,7 +218,7 @@ def test_normals_of_any_length() -> None:
         gm.curves.sample(curve, normals=x)
         for x in (gm.directions.circle(100) * lengths, gm.directions.circle(100))
     )
-    np.testing.assert_allclose(long.normals, unit.normals, rtol=0, atol=4 * ULP)
+    np.testing.assert_allclose(long.normals, unit.normals, rtol=0, atol=4 * EPS)
     assert (long.normal_index == unit.normal_index).all()
 
 

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 from gaussmap.tools.density.candidates import Candidates
-from numpy.typing import NDArray
 
 from ...products import covering
-
-Array = NDArray[np.float64]
+from ...shapes import Array
 
 
 def rows_of(count: int, seed: int, spread: float) -> Array:

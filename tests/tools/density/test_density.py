@@ -11,10 +11,9 @@ from gaussmap.tools.density import candidates, space
 from gaussmap.tools.density.methods import space_on
 
 from ...products import covering
-from ...shapes import klein_bottle, same
+from ...shapes import TORUS, klein_bottle, same
 
 DENSITIES = ["balanced", "uniform", 0.5, 1.0, 3.0]
-TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 # Dents of a plane, so that all kinds of points are there, and flat parts between them.
 DENTS = gm.Surface.from_callable(
     lambda u, v: np.stack([u, v, 0.2 * np.exp(-8 * ((u + 0.5) ** 2 + v * v))], axis=-1),

@@ -7,9 +7,8 @@ from gaussmap.tools.density.fibonacci_lattice import Lattice
 from scipy.spatial.transform import Rotation
 
 from ...products import covering
-from ...shapes import moved
+from ...shapes import EPS, moved
 
-ULP = 2.0**-52
 OPEN_NAMES = ["elliptic_paraboloid", "wavy_graph", "monkey_saddle", "hyperbolic_paraboloid"]
 FULL_NAMES = ["torus", "sphere", "moebius_band", "catenoid", "ellipsoid_patch"]
 
@@ -33,7 +32,7 @@ def test_cap_holds_all_normals_and_little_more(name, seed):
     turned = np.eye(3) if seed is None else Rotation.random(None, seed).as_matrix()
     spline = spline_of(name, turned)
     lattice = Lattice.around(spline)
-    assert np.linalg.norm(lattice.axis) == pytest.approx(1.0, abs=2 * ULP)
+    assert np.linalg.norm(lattice.axis) == pytest.approx(1.0, abs=2 * EPS)
     least = float((all_normals(spline) @ lattice.axis).min())
     assert 0.0 < lattice.cosine <= least
     assert np.arccos(lattice.cosine) < 1.6 * np.arccos(least)
@@ -63,9 +62,9 @@ def test_normals_fill_the_cap_evenly(cosine, count, axis):
     density = lattice.density_of(count)
     normals = lattice.normals(density * (1 + 1e-12))
     assert normals.shape == (count, 3)
-    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, rtol=0, atol=2 * ULP)
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, rtol=0, atol=2 * EPS)
     cosines = normals @ axis
-    assert (cosines >= cosine - 2 * ULP).all()
+    assert (cosines >= cosine - 2 * EPS).all()
     # every ring of the same solid angle holds the same number
     depth = (1.0 - cosines) / (1.0 - cosine)
     np.testing.assert_allclose(np.sort(depth), (np.arange(count) + 0.5) / count, rtol=0, atol=1e-6)

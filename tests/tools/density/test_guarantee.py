@@ -9,15 +9,12 @@ import pytest
 from gaussmap.tools.density import cover, deviation, filling
 from gaussmap.tools.density.cells import Cells
 from gaussmap.tools.density.space import Space
-from numpy.typing import NDArray
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import farthest, moved, widest_angle
+from ...shapes import Array, farthest, moved, widest_angle
 
 pytestmark = pytest.mark.compiled
-
-Array = NDArray[np.float64]
 
 
 def places(spline: gm.Spline, number: int = 200) -> tuple[Array, Array]:

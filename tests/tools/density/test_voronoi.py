@@ -8,7 +8,7 @@ from gaussmap.tools.density.cells import Cells, Sides, joined, new_cells
 from gaussmap.tools.density.voronoi import Voronoi
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...shapes import Array
 
 SIDE, FINER = 12, 4  # cells along a side of the unit square, and places along a side of a cell
 

@@ -8,10 +8,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 
-FIELDS = (
-    "points", "normals", "uv", "support", "gaussian_curvature", "mean_curvature", "normal_index",
-    "patch_index",
-)  # fmt: skip
+from ...shapes import FIELDS
 
 
 def make(

@@ -25,8 +25,8 @@ from gaussmap.tools.files.paths import atomic_path, check_target
 
 from ...full_disk import tiny_disk
 from ...refusals import refused
-from ...shapes import same
-from .made import FIELDS, columns_of, make, ply_by_trimesh
+from ...shapes import FIELDS, same
+from .made import columns_of, make, ply_by_trimesh
 
 COLUMNS = [
     *("x", "y", "z", "nx", "ny", "nz", "u", "v", "support"),

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from ...refusals import refused
+from ...shapes import FIELDS
 from ...shapes import square as mesh
-from .made import FIELDS, columns_of
+from .made import columns_of
 from .made import make as samples
 
 DTYPES = pytest.mark.parametrize("dtype", [np.float64, np.float32])

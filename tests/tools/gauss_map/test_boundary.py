@@ -3,12 +3,10 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from ...nets import normals_at, vectors_of
 from ...products import covering
-
-Array = NDArray[np.float64]
+from ...shapes import Array
 
 # Control points, the edge (u, v or w = 0), the zeros along it, the kind of the image, its sides.
 CASES = {

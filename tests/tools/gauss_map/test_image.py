@@ -5,12 +5,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from ...nets import exact_place, exact_sign, net_of, normals_at, vectors_of
 from ...refusals import refused
-
-Array = NDArray[np.float64]
+from ...shapes import Array
 
 # Its normals fill an octant: e_x, e_y, e_z at the corners, and coordinate planes along the edges.
 OCTANT = np.array([[2, 0, 0], [0, 2, 0], [0, 0, 2], [2, 2, 1], [2, 1, 2], [1, 2, 2]], dtype=float)

@@ -3,14 +3,12 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from ...refusals import refused
-from ...shapes import klein_bottle
+from ...shapes import Array, klein_bottle
 
 pytestmark = pytest.mark.compiled
 
-Array = NDArray[np.float64]
 RADIUS = "(0.35 + 0.06*sin(4*u + 3*v))"
 KNOBBY = gm.Surface.from_sympy(
     (f"(1 + {RADIUS}*cos(v))*cos(u)", f"(1 + {RADIUS}*cos(v))*sin(u)", f"{RADIUS}*sin(v)"),

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from ...nets import net_of, normals_at, vectors_of
 from ...refusals import refused
+from ...shapes import Array
 
-Array = NDArray[np.float64]
 PatchClass = gm.gauss_map.PatchClass
 
 

@@ -12,10 +12,8 @@ from numpy.typing import NDArray
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import moved
+from ...shapes import EPS, Array, moved
 
-Array = NDArray[np.float64]
-EPS = 2.0**-52
 MAJOR, MINOR = 1.0, 0.35
 TORUS = gm.surfaces.torus(major=MAJOR, minor=MINOR)
 AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, 0, -5]]

@@ -9,7 +9,7 @@ import shapely
 from gaussmap.tools.meshes.border import border_lines
 from gaussmap.tools.meshes.places import wrapped
 
-from ...shapes import area_of, circle
+from ...shapes import TORUS, area_of, circle
 
 pytestmark = pytest.mark.compiled
 
@@ -21,7 +21,6 @@ def plane(u, v):
 
 
 PLANE = gm.Surface.from_callable(plane, ((0.0, 1.0), (0.0, 1.0)), name="plane")
-TORUS = gm.surfaces.torus()
 X = np.linspace(0.0, 1.0, 21)
 HEIGHTS = np.where(
     (np.abs(X[:, None] - 0.5) < 0.11) & (np.abs(X - 0.6) < 0.11), np.nan, 0.1 * np.sin(5 * X)

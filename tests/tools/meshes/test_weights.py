@@ -3,8 +3,7 @@ import numpy as np
 import pytest
 
 from ...refusals import refused
-
-TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
+from ...shapes import TORUS
 
 
 def area_of(spline: gm.Spline) -> float:

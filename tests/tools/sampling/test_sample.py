@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 
 from ...refusals import refused
-from ...shapes import BROKEN, moved
+from ...shapes import BROKEN, TORUS, moved
 
 DEVELOPABLE = ("plane", "cylinder", "cone")
 CURVED = [name for name in gm.surfaces.names() if name not in DEVELOPABLE]
-SQUARE = ((0.0, 1.0), (0.0, 1.0))
-TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 # The corners of the triangles south, east, north, west of a cell, from its centre.
 CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
 

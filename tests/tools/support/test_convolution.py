@@ -6,13 +6,11 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from ...refusals import refused
+from ...shapes import AXES, EPS, Array
 
-Array = NDArray[np.float64]
-EPS = 2.0**-52
 NORMALS = gm.fibonacci(400)
 given = gm.SupportFunction.from_sympy
 of_spline = gm.SupportFunction.of_spline
@@ -36,7 +34,6 @@ def test_spheres() -> None:
     assert repr(sums).startswith("Convolution(400 points on SupportFunction(h = ")
 
 
-AXES = np.concatenate([np.eye(3), -np.eye(3)])
 BODY = gm.surfaces.ellipsoid(a=1.0, b=0.75, c=0.5)
 PLACE = np.eye(4)[[1, 2, 0, 3]]
 PLACE[:3, 3] = 1.0, 2.0, 3.0

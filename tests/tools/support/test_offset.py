@@ -11,9 +11,8 @@ import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 
 from ...refusals import refused
-from ...shapes import torus_samples
+from ...shapes import EPS, torus_samples
 
-EPS = 2.0**-52
 MAJOR, MINOR, REPORT = 2.0, 0.5, SamplingReport("torus", 500, 500, 125, 0.0, 0)
 FIELDS = ("points", "support", "gaussian_curvature", "mean_curvature")
 

@@ -10,9 +10,8 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from ...refusals import refused
+from ...shapes import EPS, Array
 
-Array = NDArray[np.float64]
-EPS = 2.0**-52
 NORMALS = np.concatenate([gm.icosphere(6), gm.fibonacci(200)])
 A = np.array([[4.0, 1.0, 0.0], [1.0, 3.0, 0.5], [0.0, 0.5, 2.0]])
 ELLIPSOID = "sqrt(4*n_x**2 + 2*n_x*n_y + 3*n_y**2 + n_y*n_z + 2*n_z**2)"

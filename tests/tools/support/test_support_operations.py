@@ -11,10 +11,9 @@ import sympy as sp
 from gaussmap.symbolic.expression import NORMAL
 from gaussmap.tools.support import operations
 from gaussmap.tools.support.branches import Branches
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-EPS = 2.0**-52
+from ...shapes import EPS, Array
+
 NORMALS = gm.fibonacci(1500)
 of_spline = gm.SupportFunction.of_spline
 given = gm.SupportFunction.from_sympy

@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 import sympy as sp
 from gaussmap.symbolic.expression import NORMAL
-from numpy.typing import NDArray
 
 from ...nets import exact_place, exact_sign, normals_at, quadratic_forms, vectors_of
 from ...refusals import refused
+from ...shapes import EPS, Array
 
-Array = NDArray[np.float64]
-EPS = 2.0**-52
 # Control points of formula (12) of the paper, and a patch with both kinds of curvature.
 OF_12 = [[1.5, 0, 0], [0, 1.5, 0], [0, 0, 1.5], [1, 1, 0.5], [1, 0.5, 1], [0.5, 1, 1]]
 MIXED = [[1, 0, 2], [2, 0, 1], [2, 1, 0], [3, 3, -3], [0, 2, -3], [-1, 0, -1]]

@@ -6,11 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 from gaussmap.symbolic.surfaces import CATALOGUE
-from numpy.typing import NDArray
 
-from ..shapes import unit
-
-Array = NDArray[np.float64]
+from .shapes import Array, unit
 
 
 @dataclass(frozen=True, eq=False)
