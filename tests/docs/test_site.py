@@ -1,10 +1,14 @@
-"""Pages of the site that are written by hand have all of what they list."""
+"""Pages of the site: lists that are written by hand are complete; formulas are MathML."""
 
 import re
 import runpy
+import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
+import math_core
 import pytest
+from gaussmap.symbolic import latex
 from gaussmap.tools.commands.parser import parser
 from sphinx.errors import ConfigError
 
@@ -41,3 +45,31 @@ def test_a_command_that_pages_call_is_missed_at_once(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(ConfigError, match="the command dask is not on PATH"):
         runpy.run_path(str(ROOT / "docs" / "conf.py"))
+
+
+# --- formulas as MathML ---------------------------------------------------------------------------
+
+sys.path.append(str(Path(__file__).parents[2] / "docs" / "_sphinx"))
+mathml = __import__("mathml").mathml
+
+ENTRIES = [x for entries in latex.sections().values() for x in entries]
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda x: x.name)
+def test_mathml_has_no_foreign_characters(entry):
+    """No remains of LaTeX, and no styles of letters that browsers do not know."""
+    root = ElementTree.fromstring(mathml(entry.aligned, display=True))
+    assert not re.search(r"[\\&${}]", "".join(root.itertext()))
+    assert {x.get("mathvariant", "normal") for x in root.iter()} == {"normal"}
+
+
+def test_an_index_that_is_a_word_is_one_upright_word():
+    """An <mi> of several letters is upright; one for each letter would be their product."""
+    (entry,) = (x for x in ENTRIES if x.name == "offset_curvature")
+    display = ElementTree.fromstring(mathml(entry.aligned, display=True))
+    assert [x.text for x in display.iter("mi")].count("offset") == 2
+
+
+def test_unknown_latex_is_an_error():
+    with pytest.raises(math_core.LatexError):
+        mathml(r"\unheardof{x}")

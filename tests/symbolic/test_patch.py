@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 import sympy as sp
 from gaussmap.symbolic import BezierTriangle, patch
-from gaussmap.symbolic.notation import dot, scalar
+from gaussmap.symbolic.gaussian_image import EDGE_VECTORS, TANGENTIAL
+from gaussmap.symbolic.notation import Dot, dot, scalar, substitute, vectors
+from gaussmap.symbolic.patch import FORMS, TANGENTS
 
 from ..refusals import refused
 from .calls import components, evaluated
@@ -320,3 +322,29 @@ def test_a_normal_that_is_not_three_symbols_is_refused(normal: Any) -> None:
 )  # fmt: skip
 def test_what_is_said_of_a_coordinate_is_one_short_sentence(value: Any, words: str) -> None:
     assert len(refused(words, BezierTriangle, [[value] * 3] * 6, error=ValueError)) <= 100
+
+
+# --- boundary cones of edges ----------------------------------------------------------------------
+
+
+def test_the_form_of_an_edge_is_that_of_its_patch() -> None:
+    ends = {}
+    for at in (0, 1):
+        tangents = evaluated(TANGENTS, {scalar("u"): sp.S(at), scalar("v"): sp.S.Zero})
+        for name, field in (("T", "p_u"), ("X", "p_v")):
+            ends |= components(**{f"{name}{at}": [tangents[f"{field}_{axis}"] for axis in "xyz"]})
+    found = evaluated(EDGE_VECTORS, ends)
+    for vector in vectors("abde"):
+        assert all(sp.expand(found[x.name] - x) == 0 for x in vector.components)
+    assert not {*vectors("c")[0].components} & FORMS.expanded()["V"].free_symbols
+
+
+def test_the_tangential_part_is_perpendicular() -> None:
+    x, n, y = vectors("xny")
+    found = TANGENTIAL.expanded()
+    values = {symbol: found[symbol.name] for symbol in y.components}
+    assert sp.expand(substitute(Dot(y, n).in_components(), values)) == 0
+    square = Dot(n, n).in_components()
+    for k, axis in enumerate("xyz"):
+        rest = found[f"y_{axis}"] - square * x.components[k]
+        assert sp.expand(rest / n.components[k] + Dot(x, n).in_components()) == 0

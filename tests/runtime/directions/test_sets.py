@@ -5,6 +5,7 @@ import sys
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.directions.kernels.unit import are_unit
 from gaussmap.runtime.directions.unit import as_normals, normalized
 from hypothesis import given
 from hypothesis import strategies as st
@@ -245,3 +246,41 @@ def test_directions_that_are_none(directions, complaint):
         *(sphere, sphere.branches, sphere.envelope, sphere.sheets, sphere.contains, image.contains),
     ):
         refused(complaint, call, directions)
+
+
+# --- unit normals in the plane --------------------------------------------------------------------
+
+COUNTS = [1, 2, 3, 4, 5, 6, 8, 12, 20, 100, 1001, 4096]
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_angles(count):
+    normals = gm.directions.circle(count)
+    assert normals.shape == (count, 2)
+    assert normals.flags.c_contiguous
+    angle = 2 * np.pi * (np.arange(count) + 0.5) / count
+    exact = np.column_stack([np.cos(angle), np.sin(angle)])
+    np.testing.assert_allclose(normals, exact, rtol=0, atol=2e-15)  # ulps of 2π
+    assert (as_normals(normals, 2) == normals).all()
+
+
+@pytest.mark.parametrize("count", [x for x in COUNTS if x % 2 == 0])
+def test_mirrored_bit_for_bit(count):
+    normals = gm.directions.circle(count)
+    points = set(map(tuple, normals.tolist()))
+    assert len(points) == count
+    mirrors = [normals * [1, -1], normals * [-1, 1]] + [normals[:, ::-1]] * (count % 4 == 0)
+    for mirrored in mirrors:
+        assert set(map(tuple, mirrored.tolist())) == points
+
+
+# --- whether vectors have unit length -------------------------------------------------------------
+
+
+def test_no_unit_vector():
+    normals = gm.icosphere(2)
+    for bad in (np.nan, np.inf, -2.0):
+        spoilt = normals.copy()
+        spoilt[7, 1] = bad
+        assert not are_unit(spoilt, 0, len(spoilt))
+        assert are_unit(spoilt, 0, 7)

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ...refusals import refused
-from ...shapes import torus_samples
+from ...shapes import moved, torus_samples
 
 REPORT = SamplingReport("torus", 8, 12, 4, 0.125, 1)
 FLAT = "of the surface is flat or developable (K = 0), which no set of normals can sample"
@@ -355,3 +355,34 @@ class TestAsASequence:
         assert np.linalg.norm(samples, axis=1).shape == (12,)
         others = Samples(normals=samples.normals, report=REPORT)
         refused("add 'points' to the fields", np.asarray, others, error=gm.errors.MissingFieldError)
+
+
+# --- parabolic samples: K is zero up to rounding --------------------------------------------------
+
+
+@pytest.mark.parametrize("factor", [1.0, 1e-9, 1e9, 1e-100])
+def test_curved_surfaces_are_not(factor):
+    scaled = moved(gm.surfaces.torus(), factor)
+    samples = gm.sample(gm.fit(scaled, (16, 16)), 200)
+    assert not samples.parabolic.any()
+    assert "flat" not in samples.summary()
+
+
+@pytest.mark.parametrize("height", [1e-3, 1e-6])
+def test_gentle_waves_are_curved(height):
+    waves = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, height * np.sin(u) * np.cos(v)], axis=-1), ((0, 6), (0, 6))
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", gm.GaussmapWarning)
+        assert gm.sample(gm.fit(waves, (32, 32)), 300).parabolic.sum() <= 3
+
+
+def test_samples_with_few_fields():
+    cylinder = gm.fit("cylinder", (16, 16))
+    alone = gm.sample(cylinder, 50, fields=("gaussian_curvature",))
+    assert alone.parabolic.all()
+    with pytest.raises(gm.errors.MissingFieldError, match="parabolic needs gaussian_curvature"):
+        gm.sample(cylinder, 50, fields=("points",)).parabolic  # noqa: B018
+    rows: dict[str, Any] = {x: y[:0] for x, y in gm.sample(cylinder, 50).arrays().items()}
+    assert gm.Samples(**rows, report=alone.report).parabolic.shape == (0,)

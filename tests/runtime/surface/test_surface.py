@@ -1,5 +1,8 @@
 """Surfaces of callables and of SymPy expressions; what is no surface is refused in one sentence."""
 
+import pickle
+import subprocess
+import sys
 from typing import Any
 
 import gaussmap as gm
@@ -420,3 +423,129 @@ def test_surfaces_are_shown_on_one_line() -> None:
         "Surface(hills and more: 200 × 200 points, u 0 to 199 open, v 0 to 398 open)"
     )
     assert "v -1.5708 to 1.5708 pole" in repr(gm.surfaces.sphere())
+
+
+# --- SymPy expressions whose parts are shared -----------------------------------------------------
+
+LEVELS = 60  # 2^60 parts, if shared ones are counted each time
+
+
+def nested(levels: int, x: sp.Expr, factor: float) -> sp.Expr:
+    """Return x → factor x² + 1/4, applied `levels` times without SymPy's simplification."""
+    for _ in range(levels):
+        square = sp.Mul(x, x, factor, evaluate=False)
+        x = sp.Add(square, sp.Rational(1, 4), evaluate=False)
+    return x
+
+
+@pytest.mark.parametrize("levels", [3, LEVELS])
+def test_points_and_tape_are_those_of_the_recursion(levels: int) -> None:
+    u, v = sp.symbols("u v", real=True)
+    surface = gm.Surface.from_sympy((u, v, nested(levels, u * v, 0.5)), (u, v), ((0, 1), (0, 1)))
+    a, b = np.random.default_rng(2).uniform(size=(2, 20))
+    z, along = a * b, b
+    for _ in range(levels):
+        z, along = 0.5 * z * z + 0.25, z * along
+    np.testing.assert_allclose(surface.evaluate(a, b)[:, 2], z, rtol=1e-14)
+    assert surface.tape is not None
+    np.testing.assert_allclose(surface.jets(a, b)[:, 1, 2], along, rtol=1e-12, atol=1e-300)
+
+
+def test_symbols_of_the_same_name_are_replaced() -> None:
+    u, v = sp.symbols("u v")  # not real
+    surface = gm.Surface.from_sympy((u, v, nested(LEVELS, u, 0.5)), (u, v), ((0, 1), (0, 1)))
+    assert surface.evaluate(0.5, 0.5).shape == (3,)
+    with pytest.raises(gm.errors.InputError, match="neither parameter nor number: w"):
+        gm.Surface.from_sympy((u, v, nested(LEVELS, sp.Symbol("w"), 0.5)), (u, v), ((0, 1), (0, 1)))
+
+
+# --- surfaces in other processes ------------------------------------------------------------------
+
+
+def plane(u, v):
+    return np.stack([u, v, 0 * u], axis=-1)
+
+
+def plane_derivatives(u, v):
+    jets = np.zeros((*u.shape, 6, 3))
+    jets[..., 0, :] = plane(u, v)
+    jets[..., 1, 0] = jets[..., 2, 1] = 1.0
+    return jets
+
+
+def all_kinds():
+    periodic = (True, True)
+    made = {
+        "catalogue": gm.surfaces.torus(minor=0.2),
+        "sympy": gm.Surface.from_sympy(
+            ("(2 + cos(v))*cos(u)", "(2 + cos(v))*sin(u)", "Piecewise((v, v < 1), (Abs(v), True))"),
+            sp.symbols("u v", positive=True),
+            TURN,
+        ),
+        "callable": gm.Surface.from_callable(tube, TURN, periodic),
+        "given": gm.Surface.from_callable(plane, TURN, derivatives=plane_derivatives),
+        "nurbs": gm.Surface.from_nurbs(
+            (1, 1), ([0, 0, 4, 7, 7], [0, 0, 7, 7]), plane(*np.indices((3, 2)) * 1.0)
+        ),
+        "trimmed": gm.surfaces.torus().trimmed([[(1, 1), (3, 1), (1, 3)]]),
+        "grid": gm.Surface.from_grid(tube(*np.indices((5, 6)) / 2)),
+    }
+    return made | {f"flipped {name}": surface.flipped() for name, surface in made.items()}
+
+
+@covering(name=all_kinds(), used=[False, True])
+def test_pickling(name, used):
+    surface = all_kinds()[name]
+    u, v = np.random.default_rng(0).uniform(0.5, 3.0, (2, 20))
+    if used and surface.grid is None:  # what is compiled is left out
+        surface.derivatives(u, v)
+    copy = pickle.loads(pickle.dumps(surface))
+    assert (copy.name, copy.domain, copy.boundary) == (
+        surface.name,
+        surface.domain,
+        surface.boundary,
+    )
+    assert np.array_equal(copy.evaluate(u, v), surface.evaluate(u, v))
+    if surface.grid is None:
+        assert np.array_equal(copy.derivatives(u, v), surface.derivatives(u, v))
+
+
+def test_curves_pickle():
+    curve = gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), periodic=True)
+    assert np.array_equal(pickle.loads(pickle.dumps(curve)).evaluate(1.0), curve.evaluate(1.0))
+
+
+SCRIPT = """
+import multiprocessing
+import joblib
+import gaussmap as gm
+
+
+def height(surface):
+    jets = surface.derivatives(0.5, 0.75)
+    return surface.name, jets.tolist(), gm.fit(surface, (8, 8)).evaluate(0.5, 0.5).tolist()
+
+
+if __name__ == "__main__":
+    surfaces = [
+        gm.surfaces.torus(minor=0.2),
+        gm.Surface.from_sympy(("u", "v", "Abs(u*v)"), "uv", ((0, 1), (0, 1))),
+        gm.surfaces.moebius_band().flipped(),
+    ]
+    expected = [height(x) for x in surfaces]
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        assert pool.map(height, surfaces) == expected
+    assert joblib.Parallel(n_jobs=2)(joblib.delayed(height)(x) for x in surfaces) == expected
+    print("equal")
+"""
+
+
+@pytest.mark.slow
+def test_surfaces_in_other_processes(tmp_path):
+    """With spawn, as on macOS and Windows, and with joblib's loky."""
+    script = tmp_path / "script.py"
+    script.write_text(SCRIPT)
+    run = subprocess.run(
+        [sys.executable, script], capture_output=True, text=True, timeout=300, check=False
+    )
+    assert run.stdout.strip() == "equal", run.stderr

@@ -1,8 +1,11 @@
 """Candidates against all distances, computed one by one."""
 
+import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.density.angles import choose_apart
 from gaussmap.tools.density.candidates import Candidates
+from scipy.spatial import KDTree
 
 from ...products import covering
 from ...shapes import Array
@@ -100,3 +103,16 @@ def test_places_without_a_normal_are_never_chosen():
     chosen = candidates.choose(1e-3, 50)
     assert sorted(chosen) == list(range(1, 50, 2))
     assert np.isinf(candidates.distances[::2]).all()
+
+
+# --- normals far from each other ------------------------------------------------------------------
+
+
+def test_normals_are_chosen_far_from_known_ones():
+    known, normals = gm.icosphere(3), gm.fibonacci(2000)
+    near, widest = 0.1, 1.0
+    chosen = choose_apart(np.concatenate([normals, np.zeros((1, 3))]), near, 1, widest, None, known)
+    every = np.concatenate([known, normals[chosen]])
+    distances, _ = KDTree(every).query(normals, k=2)
+    assert distances[:, 0].max() <= near
+    assert distances[chosen, 1].min() > near * 0.98

@@ -3,11 +3,13 @@
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.density import chosen_normals
 from gaussmap.tools.density.fibonacci_lattice import Lattice
+from gaussmap.tools.density.shares import apportioned
 from scipy.spatial.transform import Rotation
 
 from ...products import covering
-from ...shapes import EPS, moved
+from ...shapes import EPS, moved, same
 
 OPEN_NAMES = ["elliptic_paraboloid", "wavy_graph", "monkey_saddle", "hyperbolic_paraboloid"]
 FULL_NAMES = ["torus", "sphere", "moebius_band", "catenoid", "ellipsoid_patch"]
@@ -90,3 +92,46 @@ def test_density_does_not_depend_on_the_cap():
     axis = np.array([0.6, 0.0, 0.8])
     wide, narrow = Lattice(axis, 0.5).normals(1000.0), Lattice(axis, 0.95).normals(1000.0)
     np.testing.assert_array_equal(wide[: len(narrow)], narrow)
+
+
+# --- the normals for a count of samples -----------------------------------------------------------
+
+
+@covering(
+    name=["torus", "wavy_graph", "moebius_band", "enneper", "helicoid"], count=[1000, 1700, 3000]
+)
+def test_a_count_is_met_within_a_hundredth(name, count):
+    samples = gm.sample(name, count, density="gauss", cells=(24, 24), on="spline")
+    assert abs(len(samples) - count) <= count / 100
+
+
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band"])
+def test_a_count_is_concluded_from_a_smaller_one(name, monkeypatch):
+    spline = gm.fit(gm.surfaces.surface(name))
+    monkeypatch.setattr(chosen_normals, "PILOT", 2000)
+    tried, find = [], chosen_normals.find
+
+    def recorded(spline, normals, *rest):
+        tried.append(len(normals))
+        return find(spline, normals, *rest)
+
+    monkeypatch.setattr(chosen_normals, "find", recorded)
+    samples = gm.sample(spline, count=50_000, density="gauss")
+    assert abs(len(samples) - 50_000) <= 2500
+    assert 10 * max(tried) < (samples.report.normals or 0)
+    chunks = gm.sample_stream(spline, count=50_000, chunk=9999)
+    same(gm.Samples.concatenate(chunks), samples)
+
+
+# --- dividing a count -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("count", "weights", "parts"),
+    [(10, [1.0, 1.0], [5, 5]), (11, [2.0, 1.0, 1.0], [5, 3, 3]), (10, [1e9, 1.0, 0.0], [10, 0, 0]),
+     (0, [1.0, 2.0], [0, 0]), (2, [1.0, 5.0, 3.0], [0, 1, 1])],
+)  # fmt: skip
+def test_parts_of_a_count(count, weights, parts):
+    found = apportioned(count, np.array(weights))
+    assert found.sum() == count
+    assert np.abs(found - parts).max() <= 1

@@ -9,6 +9,7 @@ import pytest
 from gaussmap.tools.density import cover, deviation, filling
 from gaussmap.tools.density.cells import Cells
 from gaussmap.tools.density.space import Space
+from scipy.spatial import KDTree
 
 from ...products import covering
 from ...refusals import refused
@@ -351,3 +352,40 @@ def test_long_and_narrow(width: float):
         lambda u, v: np.stack([u, width * v, 0.0 * u], axis=-1), ((0.0, 1.0), (0.0, 1.0))
     )
     assert len(gm.sample(hair, coverage=0.02, cells=(6, 6))) <= 60
+
+
+# --- angles between normals of a surface and of its samples ---------------------------------------
+
+CELLS = (24, 24)
+
+
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band"])
+@pytest.mark.quick_for("wavy_graph")
+def test_no_place_of_a_grid_has_a_larger_angle(name):
+    spline = gm.fit(name, CELLS)
+    samples, (points, normals) = gm.sample(spline, 150), places(spline)
+    found, least = samples.normal_deviation(), widest_angle(samples, normals)
+    # The places of both are finite: normals turn by less than half a degree between them.
+    assert least - 0.5 <= found.normal_space <= 1.1 * least + 0.5
+    nearest = samples.normals[KDTree(samples.points).query(points)[1]]
+    least = np.degrees(np.arccos((nearest * normals).sum(axis=1).min()))
+    assert least - 0.5 <= found.space <= 1.1 * least + 1.0
+
+
+def test_what_was_asked_is_kept():
+    samples = gm.sample(gm.fit("torus", CELLS), angle=12.0)
+    assert 6.0 < samples.normal_deviation().normal_space <= 12.0
+
+
+def test_no_samples_are_far_from_everything():
+    samples = gm.sample(gm.fit("torus", CELLS), 100)[:0]
+    assert samples.normal_deviation() == (180.0, 180.0)
+
+
+def test_many_places_are_searched_block_by_block(monkeypatch):
+    """Fewer places at first, whose cells are cut once more, find about the same angles."""
+    samples = gm.sample(gm.fit("torus", (12, 12)), 60, density="gauss")
+    expected = samples.normal_deviation()
+    for name, value in (("MOST", 5000), ("BLOCK", 1000)):
+        monkeypatch.setattr(f"gaussmap.tools.density.deviation.{name}", value)
+    np.testing.assert_allclose(samples.normal_deviation(), expected, rtol=0.01)

@@ -1,7 +1,15 @@
+"""Parts of figures: the surface, spheres of normals, marks, globes and colours."""
+
+from dataclasses import replace
+
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.pictures.colours import Colours, colours_of
+from gaussmap.tools.pictures.marked import Marked, marked
 from gaussmap.tools.pictures.scene import divided, height_factor, scene_of, view
+from gaussmap.tools.pictures.sphere_half import draw_sphere, view_of
+from gaussmap.tools.pictures.support_globes import branches_of, values_on_globe
 
 
 def areas(triangles: np.ndarray) -> np.ndarray:
@@ -120,3 +128,150 @@ def test_a_small_part_of_a_domain_is_drawn_finely() -> None:
     size = np.linalg.norm(np.ptp(drawn.reshape(-1, 3), axis=0))
     assert np.linalg.norm(drawn[:, 2] - drawn[:, 0], axis=1).max() < 0.05 * size
     assert len(drawn) > 1000
+
+
+# --- the sphere of normals ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("mean", [(0, 0, 1), (1, 0, 0), (0, 0, 0), (0, 0, -1), None])
+def test_the_view_of_the_sphere(mean: tuple[float, float, float] | None) -> None:
+    vectors = np.array([-view()[2] if mean is None else mean], dtype=float)
+    seen_from = view_of(vectors)
+    np.testing.assert_allclose(seen_from @ seen_from.T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(seen_from) == pytest.approx(1.0)
+    np.testing.assert_allclose(seen_from[2], vectors[0] if vectors.any() else view()[2], atol=1e-12)
+
+
+def test_the_legend_counts_normals_of_each_kind() -> None:
+    from matplotlib.figure import Figure
+
+    def labels(samples: gm.Samples, normals: np.ndarray) -> list[object]:
+        axes = Figure().add_subplot()
+        return [handle.get_label() for handle in draw_sphere(axes, samples, normals, view())]
+
+    torus = gm.fit(gm.surfaces.torus(), cells=(24, 24))
+    balanced = gm.sample(torus, 300)
+    searched = len(np.unique(balanced.normal_index)) - 1
+    filling = int(np.count_nonzero(balanced.kind == "filling"))
+    none = np.empty((0, 3))
+    assert labels(balanced, none) == [f"filling gaps ({filling})", f"prescribed ({searched})"]
+    aligned = gm.sample(torus, 300, density="aligned")
+    assert f"on a grid ({np.count_nonzero(aligned.kind == 'grid')})" in labels(aligned, none)
+    bowl = gm.fit(gm.surfaces.elliptic_paraboloid(), cells=(16, 16))
+    normals = gm.fibonacci(100)
+    found = len(gm.sample(bowl, normals=normals))
+    assert labels(gm.sample(bowl, normals=normals), normals) == [
+        f"prescribed, no sample ({100 - found})",
+        f"prescribed ({found})",
+    ]
+
+
+# --- one normal and its points --------------------------------------------------------------------
+
+
+def test_both_points_of_a_torus_are_visible() -> None:
+    torus = gm.fit(gm.surfaces.torus(), cells=(24, 24))
+    samples = gm.sample(torus, normals=gm.fibonacci(300))
+    found = marked(samples, scene_of(torus).visible(samples.points), view())
+    assert np.count_nonzero(found.visible) == np.count_nonzero(found.samples) == 2
+    assert (samples.normals[found.samples] == found.normal).all()
+    assert 0.3 < np.linalg.norm(view()[:2] @ found.normal) < 0.95  # an arrow that is seen
+    assert found.label == "one normal and its points (2)"
+
+
+def test_rare_samples_are_not_marked() -> None:
+    samples = gm.sample("torus", normals=gm.fibonacci(40), cells=(16, 16))
+    few = samples.normal_index == samples.normal_index[np.argmax(samples.normals @ view()[2])]
+    visible = ~few
+    visible[np.flatnonzero(few)[0]] = True  # one visible sample, where the others have two
+    found = marked(samples, visible, view())
+    assert not (found.samples & few).any()
+
+
+def test_nothing_is_marked_without_prescribed_normals() -> None:
+    samples = gm.sample("torus", 50, density="uniform", cells=(16, 16))
+    assert marked(samples, np.ones(len(samples), dtype=bool), view()) is None
+
+
+@pytest.mark.parametrize(
+    ("count", "seen", "label"),
+    [
+        (1, 1, "one normal and its point"),
+        (2, 1, "one normal and its points (2, 1 visible)"),
+        (1200, 1200, "one normal and its points (1,200)"),
+    ],
+)
+def test_the_label(count: int, seen: int, label: str) -> None:
+    rows = np.arange(2000)
+    assert Marked(np.array([0.0, 0.0, 1.0]), rows < count, rows < seen).label == label
+
+
+# --- globes of the support function ---------------------------------------------------------------
+
+
+def test_a_torus_has_two_branches() -> None:
+    samples = gm.sample("torus", 400, cells=(16, 16))
+    elliptic, hyperbolic = branches_of(samples)
+    assert (elliptic.name, hyperbolic.name) == ("K > 0", "K < 0")
+    assert (samples.kind[elliptic.samples | hyperbolic.samples] == "normal").all()
+    assert (samples.gaussian_curvature[elliptic.samples] > 0).all()
+    assert (samples.gaussian_curvature[hyperbolic.samples] < 0).all()
+
+
+def test_more_branches_are_not_drawn() -> None:
+    waves = gm.surfaces.surface("wavy_graph")
+    assert branches_of(gm.sample(waves, normals=gm.fibonacci(200))) == []
+    assert branches_of(gm.sample("torus", 50, density="uniform", cells=(16, 16))) == []
+    fields = ("points", "normals", "gaussian_curvature", "normal_index")
+    assert branches_of(gm.sample("torus", normals=gm.icosphere(2), fields=fields)) == []
+
+
+def globe_of(samples: gm.Samples) -> tuple[np.ndarray, ...]:
+    """Return the values on the globe of the samples with K > 0, and x, y of its pixels."""
+    branch = branches_of(samples)[0].samples
+    values = values_on_globe(samples.normals[branch], samples.points[branch], view())
+    return values, *np.meshgrid(*2 * [np.linspace(-1.0, 1.0, len(values))])
+
+
+def test_colours_are_the_support_function() -> None:
+    """That of the torus with K > 0 is R·|(n_x, n_y)| + r; errors are squares of angles."""
+    values, x, y = globe_of(gm.sample("torus", normals=gm.fibonacci(2000)))
+    inside = np.hypot(x, y) < 1.0
+    z = np.sqrt(np.where(inside, 1.0 - x * x - y * y, 0.0))
+    across = np.linalg.norm((np.stack([x, y, z], axis=2) @ view())[..., :2], axis=2)
+    exact = 1.0 * across + 0.35
+    assert np.abs(values - exact)[inside & (across > 0.1)].max() < 0.02
+    assert np.abs(values - exact)[inside].max() < 0.06  # at the pole h has no gradient
+
+
+def test_far_from_all_normals_nothing_is_drawn() -> None:
+    near = gm.directions.cap(gm.fibonacci(2000), view()[2], 30)
+    values, x, y = globe_of(gm.sample("torus", normals=near))
+    r = np.hypot(x, y)
+    assert np.isfinite(values[r < 0.45]).all()
+    assert np.isnan(values[(r > 0.65) & (r < 1.0)]).all()
+
+
+# --- ends of the scale of colours -----------------------------------------------------------------
+
+
+def colours(curvatures: np.ndarray) -> Colours:
+    """The colours of samples of given Gaussian curvatures."""
+    samples = gm.sample("torus", normals=gm.icosphere(4), cells=(8, 8), on="spline")[
+        : len(curvatures)
+    ]
+    return colours_of(replace(samples, gaussian_curvature=curvatures), "gaussian_curvature")
+
+
+def test_few_large_curvatures_are_beyond_the_scale() -> None:
+    found = colours(np.r_[np.linspace(-0.96, 0.96, 97), 9.0, 90.0, np.inf])
+    assert found.clipped
+    assert found.norm.vmax == -found.norm.vmin
+    assert 0.91 < -found.norm.vmin < 0.95
+
+
+@pytest.mark.parametrize(("largest", "clipped"), [(1.2, False), (1.3, True)])
+def test_a_scale_ends_at_the_largest_curvature_if_that_is_near(largest, clipped) -> None:
+    found = colours(np.r_[np.ones(99), -largest])
+    assert found.clipped == clipped
+    assert found.norm.vmax == (1.0 if clipped else largest)
