@@ -277,6 +277,7 @@ def test_mirrored_bit_for_bit(count):
 # --- whether vectors have unit length -------------------------------------------------------------
 
 
+@pytest.mark.kernels
 def test_no_unit_vector():
     normals = gm.icosphere(2)
     for bad in (np.nan, np.inf, -2.0):

@@ -211,6 +211,7 @@ def test_lines_are_half_a_step_from_jumps_of_curvature(position, ends, cells, jo
 # --- steps along the rulings of an exact cylinder -------------------------------------------------
 
 
+@pytest.mark.kernels
 def test_steps_along_the_rulings_of_a_cylinder_do_not_depend_on_rounding() -> None:
     """Across them, steps reach the limit of normals; then it says nothing of those along them."""
     for curvature in np.linspace(0.5, 3.0, 50):

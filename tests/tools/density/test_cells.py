@@ -132,6 +132,7 @@ def pieces():
     return [space_on(gm.fit(x, (16, 16)), x, None).pieces[0] for x in surfaces]
 
 
+@pytest.mark.compiled
 def test_places_are_inside_as_each_piece_says(pieces):
     """Those of whole periods away, too."""
     rng, every = np.random.default_rng(1), Trims(pieces)
@@ -143,6 +144,7 @@ def test_places_are_inside_as_each_piece_says(pieces):
         assert inside[here].all() == (k == 2)
 
 
+@pytest.mark.compiled
 def test_cells_do_not_depend_on_blocks(pieces, monkeypatch):
     def cells():
         space = space_on(gm.fit(gm.surfaces.torus(), (16, 16)), gm.surfaces.torus(), None)

@@ -64,7 +64,6 @@ def test_samples_of_a_narrow_strip_stand_in_a_row(width, count, monkeypatch):
 # --- gaps between samples -------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 def test_gaps_between_candidates_are_filled():
     """The widest gap on a square of a plane: 1.34 times that of a hexagonal lattice.
 

@@ -294,6 +294,7 @@ POWER = "density, as the power of .K., must be a positive number"
 NO_POWERS = [0, -0.5, np.nan, np.inf, True, [1.0], 9.0]
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
@@ -317,12 +318,12 @@ def test_what_cannot_be_asked_for(asked: dict[str, Any], said: str):
     is_refused(said, **asked)
 
 
+@pytest.mark.kernels
 def test_densities_that_are_unknown():
     unknown = "no density 'gaus'.* did you mean gauss"
     is_refused(unknown, gm.errors.UnknownNameError, count=5, density="gaus")
 
 
-@pytest.mark.compiled
 def test_defaults():
     """Normals alone give the paper's density, all else is balanced."""
     torus = gm.fit(gm.surfaces.torus(), (8, 8))

@@ -97,6 +97,7 @@ def test_density_does_not_depend_on_the_cap():
 # --- the normals for a count of samples -----------------------------------------------------------
 
 
+@pytest.mark.compiled
 @covering(
     name=["torus", "wavy_graph", "moebius_band", "enneper", "helicoid"], count=[1000, 1700, 3000]
 )
@@ -105,6 +106,7 @@ def test_a_count_is_met_within_a_hundredth(name, count):
     assert abs(len(samples) - count) <= count / 100
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band"])
 def test_a_count_is_concluded_from_a_smaller_one(name, monkeypatch):
     spline = gm.fit(gm.surfaces.surface(name))

@@ -106,6 +106,7 @@ WIDEST = 0.35
 SURFACES = ["torus", "sphere", "moebius_band", "cylinder", "wavy_graph", "cone", klein_bottle()]
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("surface", SURFACES, ids=lambda x: getattr(x, "name", x))
 def test_texture_coordinates_do_not_jump(surface: gm.Surface | str) -> None:
     mesh = gm.sample(surface, 1500, cells=(24, 24)).mesh()
@@ -125,11 +126,11 @@ def test_texture_coordinates_do_not_jump(surface: gm.Surface | str) -> None:
     assert 0.0 < crossing.mean() < 0.3
 
 
-@pytest.mark.kernels
 def test_without_a_domain_they_are_the_parameters() -> None:
     assert np.array_equal(square().corner_uv, square().uv[square().triangles])
 
 
+@pytest.mark.compiled
 def test_files_have_them(tmp_path) -> None:
     trimesh = pytest.importorskip("trimesh")
     mesh = gm.sample("sphere", 500, cells=(16, 16)).mesh()
