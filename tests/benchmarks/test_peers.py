@@ -1,5 +1,6 @@
 """What `make bench-peers` measures with: the closed forms, the two metrics, the turns, the page."""
 
+import dataclasses
 import math
 import re
 from pathlib import Path
@@ -7,13 +8,14 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.benchmarks.peers import cad, machine, metrics, peer, recipe
+from gaussmap.benchmarks.peers import cad, machine, measure, metrics, peer, recipe
 from gaussmap.benchmarks.peers.catalogue import RECIPE
 from gaussmap.benchmarks.peers.forms import FORMS, Torus, Waves
 from gaussmap.benchmarks.peers.mesh_metrics import to_surface
+from gaussmap.benchmarks.peers.metrics import Places
 from gaussmap.benchmarks.peers.metrics import nearest_by_tree as nearest
 from gaussmap.benchmarks.peers.opening import opening
-from gaussmap.benchmarks.peers.peer import Peer
+from gaussmap.benchmarks.peers.peer import Peer, Turns
 from gaussmap.benchmarks.peers.triangles import by_grid, joined
 from gaussmap.benchmarks.peers.untuned import Boss
 from gaussmap.benchmarks.quality.surfaces import JUDGED
@@ -277,3 +279,39 @@ def test_beyond_a_border_the_border_is_nearest():
     ends = form.evaluate(np.array([1.0]), np.linspace(-1, 1, 200_001))[0]
     nearest = np.linalg.norm(ends - points, axis=1).min()
     assert to_surface(form, points)[0] == pytest.approx(nearest, rel=1e-9)
+
+
+# --- measuring a peer and gaussmap itself, on few points ------------------------------------------
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch):
+    monkeypatch.setattr(measure, "MILLION", 2_000)
+    monkeypatch.setattr(measure, "JUDGED", 500)
+    measure.normals_for.cache_clear()
+
+
+@pytest.mark.parametrize("form", FORMS, ids=lambda x: x.name)
+def test_a_peer_is_timed_and_judged(form):
+    peer = dataclasses.replace(RECIPE, count=1_000, rounds=1)
+    found = measure.measure(form, Places.of(form, 300), peer)
+    assert (found.points, found.missing) == (1_000, "")
+    assert min(found.rate, found.times_same, found.times_million) > 0.0
+    assert 0.0 < found.errors[1] <= 180.0
+
+
+def test_ratios_are_of_rates(monkeypatch):
+    """Work takes 3 times as long as gaussmap and gives half the points that were asked."""
+    monkeypatch.setattr(
+        measure, "in_turns", lambda work, others, rounds: Turns(0.1, 50, dict.fromkeys(others, 3.0))
+    )
+    peer = dataclasses.replace(RECIPE, count=100)
+    found = measure.measure(FORMS[0], Places.of(FORMS[0], 10), peer)
+    assert (found.rate, found.times_same, found.times_million) == (500.0, 6.0, 120.0)
+
+
+def test_a_missing_peer_is_not_prepared():
+    peer = dataclasses.replace(RECIPE, module="no_such_package_here")
+    found = measure.measure(FORMS[0], Places.of(FORMS[0], 10), peer)
+    assert found == measure.Measured(peer, peer.missing)
+    assert found.missing

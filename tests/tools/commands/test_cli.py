@@ -649,3 +649,27 @@ def test_completion_is_installed(shell: str) -> None:
         [shell, "-c", f"{before}{evaluate}; {after}"], capture_output=True, text=True, check=True
     )
     assert "_gaussmap_completion" in done.stdout
+
+
+# --- `gaussmap mesh` ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", ["ply", "obj", "stl", "vtu", "vtp"])
+def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["mesh", "torus", "--count", "100", *EIGHT, "-o", f"torus.{suffix}"]) == 0
+    out, err = capsys.readouterr()
+    pattern = rf"torus\.{suffix}: (\d+) vertices, (\d+) triangles, closed; 95 % have .*\n"
+    found = re.fullmatch(pattern, out)
+    assert err == ""
+    mesh = pytest.importorskip("pyvista").read(f"torus.{suffix}")
+    assert mesh.n_cells == int(found[2]) == 2 * int(found[1])
+
+
+def test_samples_that_are_left_out_are_counted(capsys: pytest.CaptureFixture[str]) -> None:
+    mesh = gm.sample("wavy_graph", 300, cells=(16, 16)).mesh()
+    own = mesh.sample_index[mesh.sample_index >= 0]
+    assert len(np.unique(own)) + mesh.left_out == 300
+    assert mesh.left_out > 0
+    few = ["--count", "300", "--cells", "16", "16"]
+    assert main(["mesh", "wavy_graph", *few, "-o", "graph.ply"]) == 0
+    assert f", {mesh.left_out} of the samples left out, " in capsys.readouterr().out
