@@ -28,12 +28,12 @@ SOME = (
     "runtime/onto_surface/test_refinement.py", "runtime/search/test_exact.py",
     "runtime/spline/test_developable.py", "symbolic/test_emit.py",
     *(f"tools/density/test_{name}.py" for name in (
-        "aligned", "cover", "density", "progressive", "voronoi",
+        "aligned", "cover", "density", "voronoi",
     )),
     "tools/gauss_map/test_parabolic.py", "tools/gauss_map/test_silhouette.py",
     "tools/meshes/test_weights.py",
     *(f"tools/support/test_{name}.py" for name in (
-        "convolution", "offset", "support", "support_operations",
+        "convolution", "support", "support_operations",
     )),
 )  # fmt: skip
 # What `make verify` runs, and `make test` does not even read: pages, pictures and measurements.

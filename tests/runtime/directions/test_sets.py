@@ -1,18 +1,21 @@
 """Sets of normals: how many, how long, how even; and what a user brings."""
 
 import sys
+from itertools import combinations
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.directions.kernels.unit import are_unit
+from gaussmap.runtime.directions.regions import angles_between
 from gaussmap.runtime.directions.unit import as_normals, normalized
 from hypothesis import given
 from hypothesis import strategies as st
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import EPS
+from ...shapes import AXES, EPS, Array
 
 FREQUENCIES = [1, 2, 3, 5, 8, 16, 33]
 
@@ -285,3 +288,224 @@ def test_no_unit_vector():
         spoilt[7, 1] = bad
         assert not are_unit(spoilt, 0, len(spoilt))
         assert are_unit(spoilt, 0, 7)
+
+
+# --- regions of the sphere ------------------------------------------------------------------------
+
+NORMALS = gm.fibonacci(20_000)
+OCTANT = [[1, 0, 0], [0, 2, 0], [0, 0, 3]]
+
+
+def shares(part: Any) -> float:
+    return len(part) / len(NORMALS)
+
+
+# --- angles ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("degrees", [0.0, 1e-12, 1e-6, 1.0, 60.0, 90.0, 179.0, 180 - 1e-6])
+def test_angles_are_accurate_near_0_and_180(degrees: float) -> None:
+    t = np.radians(degrees)
+    axis, other = np.array([0, 0, 1.0]), np.array([np.sin(t), 0, np.cos(t)])
+    # an angle is known to the rounding of the coordinates, an ε of a radian
+    assert abs(float(angles_between(other, axis)) - degrees) <= np.degrees(4 * 2.0**-52)
+
+
+# --- caps -----------------------------------------------------------------------------------------
+
+
+@covering(angle=[1.0, 30.0, 90.0, 150.0], axis=[[0, 0, 1], [-3, 0, 0], [1, 2, -3]])
+def test_a_cap_has_its_share(angle: float, axis: Any) -> None:
+    part = gm.directions.cap(NORMALS, axis, angle)
+    cosines = part @ axis / np.linalg.norm(axis)
+    assert cosines.min() >= np.cos(np.radians(angle)) - 1e-15
+    area = (1 - np.cos(np.radians(angle))) / 2
+    assert abs(shares(part) - area) < 3 * len(NORMALS) ** -0.75
+    rest = gm.directions.cap(NORMALS, -np.asarray(axis), np.nextafter(180 - angle, 0))
+    assert len(part) + len(rest) == len(NORMALS)
+
+
+def test_a_cap_keeps_order_and_bits() -> None:
+    part = gm.directions.cap(NORMALS, [0, 0, 1], 40)
+    assert (part == NORMALS[: len(part)]).all()
+    scaled = gm.directions.cap(8 * NORMALS, [0, 0, 1e-300], np.float64(40))
+    assert (scaled == part).all()
+
+
+def test_its_border_belongs_to_a_cap() -> None:
+    axes = np.concatenate([np.eye(3), -np.eye(3)])
+    assert len(gm.directions.cap(axes, [0, 0, 1], 90)) == 5
+    assert gm.directions.cap(axes, [0, 0, 1], 0).tolist() == [[0, 0, 1]]
+    assert len(gm.directions.cap(axes, [0, 0, 1], 180)) == 6
+    assert gm.directions.cap(axes, [1, 1, 1], 54).shape == (0, 3)
+    assert len(gm.directions.cap(axes, [1, 1, 1], 55)) == 3
+
+
+def test_a_small_cap_of_close_normals() -> None:
+    t = np.array([0.5e-9, 1.5e-9])
+    close = np.stack([np.sin(t), 0 * t, np.cos(t)], axis=1)
+    assert len(gm.directions.cap(close, [0, 0, 1], np.degrees(1e-9))) == 1
+
+
+@pytest.mark.parametrize("angle", [-1, 180.1, np.nan, np.inf, "30", None])
+def test_angles_that_are_none(angle: Any) -> None:
+    refused(r"^angle must", gm.directions.cap, NORMALS, [0, 0, 1], angle)
+
+
+@pytest.mark.parametrize("axis", [[0, 0, 0], [0, np.nan, 1], [0, 1], "z"])
+def test_axes_that_are_none(axis: Any) -> None:
+    refused(r"^axis ", gm.directions.cap, NORMALS, axis, 30)
+
+
+# --- polygons -------------------------------------------------------------------------------------
+
+
+def test_an_octant() -> None:
+    part = gm.directions.polygon(NORMALS, OCTANT)
+    assert (part >= 0).all()
+    assert len(part) == (NORMALS >= 0).all(axis=1).sum()
+
+
+def test_the_faces_of_an_icosahedron_cover_the_sphere() -> None:
+    corners = gm.icosphere(1)
+    cosines = corners @ corners.T
+    edges = np.abs(cosines - np.sort(cosines[0])[-2]) < 1e-12
+    faces = [x for x in combinations(range(12), 3) if edges[np.ix_(x, x)].sum() == 6]
+    assert len(faces) == 20
+    parts = []
+    for face in faces:
+        triangle = corners[list(face)]
+        turned = triangle if np.linalg.det(triangle) > 0 else triangle[::-1]
+        parts.append(gm.directions.polygon(NORMALS, turned))
+    assert len(np.concatenate(parts)) == len(NORMALS)
+    assert len(np.unique(np.concatenate(parts), axis=0)) == len(NORMALS)
+
+
+def test_corners_on_one_great_circle_bound_a_hemisphere() -> None:
+    corners = [[1, 0, 0], [-1, 2, 0], [-1, -2, 0]]
+    assert (gm.directions.polygon(NORMALS, corners)[:, 2] >= 0).all()
+    assert len(gm.directions.polygon(NORMALS, corners)) == len(NORMALS) // 2
+
+
+def test_its_corners_belong_to_a_polygon() -> None:
+    triangle = gm.fibonacci(50)[[3, 20, 9]]
+    turned = triangle if np.linalg.det(triangle) > 0 else triangle[::-1]
+    inside = gm.directions.polygon(np.concatenate([turned, -turned]), turned)
+    assert (inside == turned).all()
+    assert gm.directions.polygon(-turned, turned).shape == (0, 3)
+
+
+@pytest.mark.parametrize(
+    ("corners", "message"),
+    [
+        (OCTANT[:2], "needs at least 3 corners, not 2"),
+        (OCTANT[::-1], "anticlockwise"),
+        ([[1, 0, 0], [1, 0, 0], [0, 1, 0]], "corners 0 and 1 are equal or opposite"),
+        ([[1, 0, 0], [0, 1, 0], [-1, 0, 0]], "corners 2 and 0 are equal or opposite"),
+        ([[2, 0, 1], [0.1, 0.1, 1], [0, 2, 1], [-2, -2, 1]], "convex"),  # with a notch
+        ([[0, 0, 0], [0, 1, 0], [1, 0, 0]], "zero vector"),
+        ([[np.nan, 0, 0], [0, 1, 0], [1, 0, 0]], "NaN"),
+    ],
+)
+def test_corners_that_are_none(corners: Any, message: str) -> None:
+    refused(message, gm.directions.polygon, NORMALS, corners)
+
+
+# --- covering radius ------------------------------------------------------------------------------
+
+CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+TETRAHEDRON = CUBE[[0, 3, 5, 6]]
+ACCURACY = 1e-12  # degrees: some ε of a radian, and coordinates that are rounded
+
+
+def ring(colatitude: float, angles: Any) -> Array:
+    t, c = np.radians(np.asarray(angles, float)), np.radians(colatitude)
+    return np.stack([np.sin(c) * np.cos(t), np.sin(c) * np.sin(t), np.cos(c) + 0 * t], axis=1)
+
+
+def nearest_angle(places: Array, normals: Array) -> Array:
+    return angles_between(places[:, None], normals).min(axis=1)
+
+
+def by_search(normals: Array) -> tuple[float, float]:
+    """Return bounds of the radius in degrees, by branch and bound over the faces of a cube.
+
+    Central projection of a face brings points no farther apart, and the distance to the nearest
+    normal changes no faster than the place: so a square of the half-width w can only matter if the
+    distance at its middle plus w√2 exceeds the best that was found.
+    """
+    face, s, t = (x.ravel() for x in np.meshgrid(np.arange(6), 0.0, 0.0, indexing="ij"))
+    width, best, reach = 1.0, 0.0, 180.0
+    while reach > 1e-3:
+        flat = np.stack([s, t, np.ones_like(s)], axis=1)
+        places = np.where(face % 2, 1.0, -1.0)[:, None] * flat
+        places = np.take_along_axis(places, (np.arange(3) + face[:, None] // 2) % 3, axis=1)
+        distances = nearest_angle(places / np.linalg.norm(places, axis=1, keepdims=True), normals)
+        best, reach = max(best, float(distances.max())), float(np.degrees(width * np.sqrt(2)))
+        kept = distances + reach > best
+        width /= 2
+        corners = [(i, j) for i in (-width, width) for j in (-width, width)]
+        face = np.repeat(face[kept], 4)
+        s, t = (
+            (np.repeat(x[kept], 4).reshape(-1, 4) + [c[k] for c in corners]).ravel()
+            for k, x in enumerate((s, t))
+        )
+    return best, best + reach
+
+
+# --- exact cases ----------------------------------------------------------------------------------
+
+
+def degrees(cosine: float) -> float:
+    return float(np.degrees(np.arccos(cosine)))
+
+
+EXACT: dict[str, tuple[Any, float]] = {
+    "octahedron": (AXES, degrees(3**-0.5)),
+    "cube": (CUBE, degrees(3**-0.5)),
+    "tetrahedron": (TETRAHEDRON, degrees(1 / 3)),
+    "icosahedron": (gm.icosphere(1), degrees(np.sqrt((5 + 2 * np.sqrt(5)) / 15))),
+    "healpix": (gm.directions.healpix(1), degrees(2 / 3)),
+    "one normal": ([[0, 3, 4]], 180.0),
+    **{f"{x} degrees": (ring(90, [0, x]), 180 - x / 2) for x in (1e-6, 1.0, 90.0, 179.0, 180.0)},
+}
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_exact_cases(name: str) -> None:
+    normals, radius = EXACT[name]
+    for repeated in (normals, np.concatenate([normals, 3 * np.asarray(normals)])):
+        assert abs(gm.directions.covering_radius(repeated) - radius) < ACCURACY
+
+
+# --- brute force ----------------------------------------------------------------------------------
+
+
+def check(normals: Array) -> None:
+    low, high = by_search(normals)
+    assert low - 1e-9 <= gm.directions.covering_radius(normals) <= high + 1e-9
+
+
+@given(
+    count=st.integers(1, 30),
+    seed=st.integers(0, 10**6),
+    squeezed=st.sampled_from([1.0, 0.3, 0.01, 0.0]),
+    shift=st.sampled_from([0.0, 0.5, 1.0, 3.0]),
+)
+def test_against_a_search(count: int, seed: int, squeezed: float, shift: float) -> None:
+    """Random sets: all round, flat, on one side."""
+    vectors = np.random.default_rng(seed).standard_normal((count, 3))
+    vectors = vectors * [1, 1, squeezed] + [0, 0, shift]
+    check(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
+
+
+@pytest.mark.parametrize(
+    "normals",
+    [
+        pytest.param(gm.fibonacci(500), marks=pytest.mark.slow),
+        gm.directions.random(300),
+        gm.directions.healpix(4),
+    ],
+)
+def test_sets_against_a_search(normals: Array) -> None:
+    check(normals)
