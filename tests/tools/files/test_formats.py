@@ -28,10 +28,7 @@ from ...refusals import refused
 from ...shapes import FIELDS, same
 from .made import columns_of, make, ply_by_trimesh
 
-COLUMNS = [
-    *("x", "y", "z", "nx", "ny", "nz", "u", "v", "support"),
-    *("gaussian_curvature", "mean_curvature", "normal_index", "patch_index"),
-]
+COLUMNS = list(columns_of(make(0)))
 # Labels that a careless format would break: line ends, quotes, other alphabets, trailing spaces.
 LABEL = ' x²\r\n"y" <&> \\ \u2028 \U0001f369 ' + 300 * " " + "end_header\ncomment "
 
