@@ -227,7 +227,7 @@ def test_ends_that_differ_by_amplified_rounding(axis: int) -> None:
     gm.fit(gm.Surface.from_callable(reduced, domain, periodic), (8, 8))
 
 
-# --- the misfit of a spline beside independent measurements, on smooth and hard surfaces ----------
+# --- the misfit of a spline -----------------------------------------------------------------------
 
 GENERATOR = np.random.default_rng(3)
 

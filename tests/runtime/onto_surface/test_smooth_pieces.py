@@ -33,10 +33,9 @@ def barrel():
     return revolved(profile, weights, name="barrel")
 
 
-def roof(factor=1.0):
+def roof():
     """Two rectangles of 5 × 2 and 5 × 4 with a right angle between them."""
-    points = [[[0, y, 2], [0, y, 0], [4, y, 0]] for y in (0, 5)]
-    points = factor * np.array(points, dtype=float)
+    points = np.array([[[0.0, y, 2], [0, y, 0], [4, y, 0]] for y in (0, 5)])
     return gm.Surface.from_nurbs((1, 1), ([0, 0, 1, 1], [0, 0, 1, 3, 3]), points, name="roof")
 
 
