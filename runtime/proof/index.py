@@ -286,15 +286,16 @@ class ProvedIndex:
         wide = np.flatnonzero((open_.kinds == CURVE) & ~small & ~thin)
         if len(wide) == 0:
             return open_
-        known = dict[bytes, Array]()
+        known = dict[bytes, Undecided]()  # queries may repeat normals
         found = [Undecided._make(x[[k]] for x in open_) for k in range(len(open_.numbers))]
+        jets = partial(jets_of, self.tape)
         for k in wide.tolist():
-            normal = normals[open_.numbers[k]]
-            if (key := normal.tobytes()) not in known:
-                known[key] = self._small_boxes(normal)
-            found[k] = separated(
-                found[k], known[key], self.domain[4:], normal, partial(jets_of, self.tape)
-            )
+            one, normal = found[k], normals[open_.numbers[k]]
+            if (key := normal.tobytes() + one.boxes.tobytes()) not in known:
+                small = self._small_boxes(normal)
+                known[key] = separated(one, small, self.domain[4:], normal, jets)
+            rows = known[key]
+            found[k] = rows._replace(numbers=np.repeat(one.numbers, len(rows.numbers)))
         return Undecided._make(np.concatenate(x) for x in zip(*found, strict=True))
 
     def _small_boxes(self, normal: NDArray[np.float64]) -> Array:
