@@ -18,5 +18,5 @@ def _larger(texts: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
 
 
 def texts(leaves: int) -> st.SearchStrategy[str]:
-    """Return texts of up to so many numbers and symbols."""
+    """Return texts with at most `leaves` numbers and symbols."""
     return st.recursive(ATOMS, _larger, max_leaves=leaves)

@@ -82,8 +82,8 @@ class Comparison:
         The largest angle between normals, away from collapsed sides of the domain, such as poles:
         next to these sides angles decrease only slowly with the size of the cells.
     farthest, steepest : (2,) float64 array
-        The parameters, as fractions of the domain, of the largest distance, and of `angle_away`
-        (if that is None, of the largest distance, too).
+        The parameters, as fractions of the domain, of the largest distance and of `angle_away`.
+        If `angle_away` is None, both are those of the largest distance.
 
     """
 

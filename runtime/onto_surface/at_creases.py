@@ -59,8 +59,8 @@ class OnCreases(NamedTuple):
     the docstring of the module defines, or NaN where the index is unknown. The parameters of all
     points of a component differ by at most `radius` (k, 2) from `uv` (k, 2). A point is `unsure` if
     its normal is nearly that of one side, or if its index is unknown. In the first case that side
-    may have a regular point with this normal beside the crease. If it has, the point of the crease
-    exists only if it is `paired`: the two points then have opposite indices. If it has not, the
+    may have a regular point with this normal near the crease. If there is one, the point of the
+    crease exists only if it is `paired`: both then have opposite indices. If there is none, the
     point of the crease exists only if it is `alone`.
     """
 

@@ -35,8 +35,8 @@ def components_in(
 
     A component counts as known if its kind is known. A component that the boundary of the trim cuts
     gets a row for each of its pieces inside the trim, or an undecided box if no piece is found. The
-    pieces of curves with overlapping boxes are found together.
-    `jets` returns the 2-jets of the surface at u and v (k,). The normals (S, 3) are unit vectors.
+    pieces of curves with overlapping boxes are found together. `jets` returns the 2-jets of the
+    surface at u and v (k,). The normals (S, 3) are unit vectors.
     """
     known = open_.kinds != OPEN_BOX
     if trim is None or len(known) == 0:

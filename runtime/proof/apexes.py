@@ -1,8 +1,8 @@
 """Apexes: sides of the domain, and parameter lines inside it, that are collapsed to a point.
 
 On a line u = u₁ that is collapsed to a point, x_v = 0. For u on either side of the line, the mean
-value theorem says that n·x_v(u, v) = (u − u₁) n·x_uv(ξ, v) with some ξ between u₁ and u. A point
-(u, v) beside the line that has the normal n therefore has n·x_u = 0, and n·x_uv(ξ, v) = 0. If
+value theorem says that n·x_v(u, v) = (u − u₁) n·x_uv(ξ, v) with some ξ between u₁ and u. Therefore
+n·x_u(u, v) = 0 and n·x_uv(ξ, v) = 0 at a point (u, v) near the line that has the normal n. If
 bounds over a box that touches the line exclude one of these zeros, or show that all normals are
 more than 90° from n, the box has no point with this normal.
 """

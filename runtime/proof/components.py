@@ -87,7 +87,7 @@ def _join(open_: Undecided, keep: NDArray[np.bool_], domain: Array) -> None:
     rows, kinds, border = open_.boxes, open_.kinds, open_.border
     while k < len(rows):
         low, high = rows[:, 0::2], rows[:, 1::2]
-        shift = _shift(0.5 * (low + high), 0.5 * (low[k] + high[k]), periods)
+        shift = shift_to(0.5 * (low + high), 0.5 * (low[k] + high[k]), periods)
         low, high, width = low + shift, high + shift, high - low
         on_curve, is_open = kinds == CURVE, (kinds != CURVE) & (width > NEAR * size).any(axis=1)
         width[on_curve & (width > LARGEST * size).any(axis=1)] = 0.0
@@ -111,7 +111,7 @@ def _join(open_: Undecided, keep: NDArray[np.bool_], domain: Array) -> None:
         k = 0
 
 
-def _shift(x: Array, towards: Array, periods: Array) -> Array:
+def shift_to(x: Array, towards: Array, periods: Array) -> Array:
     """Return the multiples of the periods by which points x (k, 2) come nearest to `towards`."""
     return periods * np.rint((towards - x) / np.where(periods > 0.0, periods, 1.0))
 
@@ -146,7 +146,7 @@ def _others(number: int, path: Array, boxes: Array, places: Sorted, periods: Arr
     low, high = path[0::2], path[1::2]
 
     def meet(first: Array, last: Array) -> NDArray[np.bool_]:
-        shift = _shift(0.5 * (first + last), 0.5 * (low + high), periods)
+        shift = shift_to(0.5 * (first + last), 0.5 * (low + high), periods)
         return np.all((first + shift <= high) & (last + shift >= low), axis=1)
 
     if meet(boxes[:, 0::2], boxes[:, 1::2]).sum() > 1:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..base.aliases import Array, Flags, Indices
 from ..spline.joints import linked
-from .components import Undecided
+from .components import Undecided, shift_to
 
 Jets = Callable[[Array, Array], Array]
 
@@ -42,9 +42,7 @@ def separated(one: Undecided, boxes: Array, periods: Array, normal: Array, jets:
     """
     low, high = one.boxes.reshape(2, 2).T
     middles, halves = boxes[:, 0], boxes[:, 1]
-    middles = middles + periods * np.rint(
-        (0.5 * (low + high) - middles) / np.where(periods > 0.0, periods, 1.0)
-    )
+    middles = middles + shift_to(middles, 0.5 * (low + high), periods)
     own = ((middles >= low) & (middles <= high)).all(axis=1)
     if not own.any():
         return one
@@ -54,15 +52,18 @@ def separated(one: Undecided, boxes: Array, periods: Array, normal: Array, jets:
     rows = [owner == k for k in range(owner.max() + 1)]
     if len(rows) < 2:
         return one
+    hulls = np.array([_hull(middles[x], halves[x]) for x in rows])
     points = np.array(
-        [_point(middles[x], _hull(middles[x], halves[x]), one.boxes[0], normal, jets) for x in rows]
+        [
+            _point(middles[x], hull, one.boxes[0], normal, jets)
+            for x, hull in zip(rows, hulls, strict=True)
+        ]
     )
     # Boxes beside a curve may count as boxes on it: then the steps lead to boxes of another set.
     there = [owner[(np.abs(middles - x) <= halves).all(axis=1)] for x in points]
     keep = [k for k, x in enumerate(there) if len(x) == 0 or k in x]
-    hulls = np.array([_hull(middles[rows[k]], halves[rows[k]]) for k in keep])
     more = Undecided._make(np.repeat(x, len(keep), axis=0) for x in one)
-    return more._replace(boxes=hulls.reshape(-1, 4), uv=points[keep])
+    return more._replace(boxes=hulls[keep].reshape(-1, 4), uv=points[keep])
 
 
 def _connected(low: Array, high: Array, size: Array, around: Flags) -> Indices:

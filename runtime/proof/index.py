@@ -280,9 +280,9 @@ class ProvedIndex:
 
         A thin box has one curve only, and a small box at most one component.
         """
-        sizes, boxes = np.ptp(self.domain[:4].reshape(2, 2), axis=1), open_.boxes
-        small = (np.ptp(boxes.reshape(-1, 2, 2), axis=2) <= LARGEST * sizes).all(axis=1)
-        thin = are_thin(boxes, sizes).any(axis=1)
+        sizes = np.ptp(self.domain[:4].reshape(2, 2), axis=1)
+        small = (np.ptp(open_.boxes.reshape(-1, 2, 2), axis=2) <= LARGEST * sizes).all(axis=1)
+        thin = are_thin(open_.boxes, sizes).any(axis=1)
         wide = np.flatnonzero((open_.kinds == CURVE) & ~small & ~thin)
         if len(wide) == 0:
             return open_
@@ -292,8 +292,8 @@ class ProvedIndex:
         for k in wide.tolist():
             one, normal = found[k], normals[open_.numbers[k]]
             if (key := normal.tobytes() + one.boxes.tobytes()) not in known:
-                small = self._small_boxes(normal)
-                known[key] = separated(one, small, self.domain[4:], normal, jets)
+                boxes = self._small_boxes(normal)
+                known[key] = separated(one, boxes, self.domain[4:], normal, jets)
             rows = known[key]
             found[k] = rows._replace(numbers=np.repeat(one.numbers, len(rows.numbers)))
         return Undecided._make(np.concatenate(x) for x in zip(*found, strict=True))

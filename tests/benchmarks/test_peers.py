@@ -301,7 +301,7 @@ def test_a_peer_is_timed_and_judged(form):
 
 
 def test_ratios_are_of_rates(monkeypatch):
-    """Work takes 3 times as long as gaussmap and gives half the points that were asked."""
+    """The other tool takes 3 times as long as gaussmap, and returns half the requested points."""
     monkeypatch.setattr(
         measure, "in_turns", lambda work, others, rounds: Turns(0.1, 50, dict.fromkeys(others, 3.0))
     )

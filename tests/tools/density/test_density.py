@@ -349,7 +349,7 @@ def spacings(points: np.ndarray) -> np.ndarray:
 
 
 def gaps(points: np.ndarray, beside: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """The distances of points to the nearest ones of the first, beside their spacing."""
+    """Return distances of points from the nearest of the first points, relative to a spacing."""
     return KDTree(first).query(points)[0] / beside
 
 

@@ -89,7 +89,7 @@ def connected(one: np.ndarray, other: np.ndarray) -> int:
 
 
 def check_topology(mesh: gm.Mesh, characteristic: int, borders: int) -> None:
-    """Check that a mesh is a surface, with this Euler characteristic and so many borders.
+    """Check that a mesh is a surface with a given Euler characteristic and number of borders.
 
     The edges opposite to each vertex make one line, open or closed.
     """
